@@ -1,0 +1,167 @@
+//! Fields: values that vary over the page, as trees that can be evaluated anywhere.
+//!
+//! A field yields a number, a length in millimetres or an angle in radians; lowering has checked which. Points outside
+//! an image or beyond a gradient's ends take the nearest value.
+
+mod image;
+mod noise;
+
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use crate::geom::{Length, Point, Rect};
+use crate::region::Region;
+
+pub use image::Image;
+pub use noise::Noise;
+
+/// A value at every point of the page. Cheap to clone.
+#[derive(Debug, Clone, Serialize)]
+#[serde(transparent)]
+pub struct Field(Arc<Node>);
+
+/// How a field's value is found.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Node {
+    /// The same everywhere.
+    Constant(f64),
+    /// The point's place to the right, in units of so many millimetres.
+    X(Length),
+    /// The point's place downwards, in units of so many millimetres.
+    Y(Length),
+    /// From `start` at one point to `end` at another, and clamped beyond them.
+    Linear {
+        /// Where it is `start`.
+        from: Point,
+        /// Where it is `end`.
+        to: Point,
+        /// The first value.
+        start: f64,
+        /// The last value.
+        end: f64,
+    },
+    /// From `start` in the centre to `end` at the radius, and clamped beyond it.
+    Radial {
+        /// The centre.
+        centre: Point,
+        /// Greater than zero.
+        radius: Length,
+        /// The value in the centre.
+        start: f64,
+        /// The value at the radius.
+        end: f64,
+    },
+    /// Smooth noise in [0, 1].
+    Noise(Noise),
+    /// The brightness of an image, 0 black to 1 white, in linear light.
+    Image {
+        /// The samples.
+        image: Arc<Image>,
+        /// Where the image lies on the page.
+        place: Rect,
+    },
+    /// The distance to a region's outline in millimetres, positive inside.
+    Distance(Region),
+    /// A function of one field.
+    Unary(Function, Field),
+    /// A function of two fields.
+    Binary(Operator, Field, Field),
+    /// Where the first is not zero the second, else the third.
+    Select(Field, Field, Field),
+}
+
+/// Functions of one value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Function {
+    /// `-a`
+    Negate,
+    /// 1 where a is 0, else 0.
+    Not,
+    /// Without its sign.
+    Abs,
+    /// Of an angle in radians.
+    Sin,
+    /// Of an angle in radians.
+    Cos,
+    /// Of an angle in radians.
+    Tan,
+    /// The angle with this sine, in radians.
+    Asin,
+    /// The angle with this cosine, in radians.
+    Acos,
+    /// The angle with this tangent, in radians.
+    Atan,
+    /// Square root; 0 of what is negative.
+    Sqrt,
+    /// e to the power of a.
+    Exp,
+    /// Natural logarithm.
+    Ln,
+    /// The greatest whole number not above.
+    Floor,
+    /// The least whole number not below.
+    Ceil,
+    /// The nearest whole number, halves up.
+    Round,
+    /// -1, 0 or 1.
+    Sign,
+    /// L* / 100 of a linear luminance in [0, 1] (CIE 1976).
+    Lightness,
+}
+
+/// Functions of two values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Operator {
+    /// `a + b`
+    Add,
+    /// `a - b`
+    Subtract,
+    /// `a * b`
+    Multiply,
+    /// `a / b`; 0 where b is 0.
+    Divide,
+    /// The remainder with the sign of b; 0 where b is 0.
+    Remainder,
+    /// `a ^ b`
+    Power,
+    /// The smaller.
+    Min,
+    /// The greater.
+    Max,
+    /// The angle of the vector (b, a), in radians.
+    Atan2,
+    /// 1 where it holds, else 0.
+    Less,
+    /// 1 where it holds, else 0.
+    LessEqual,
+    /// 1 where it holds, else 0.
+    Equal,
+    /// 1 where neither is 0, else 0.
+    And,
+    /// 1 where not both are 0, else 0.
+    Or,
+}
+
+impl Field {
+    /// From its tree.
+    #[must_use]
+    pub fn new(node: Node) -> Self {
+        Self(Arc::new(node))
+    }
+
+    /// The same everywhere.
+    #[must_use]
+    pub fn constant(value: f64) -> Self {
+        Self::new(Node::Constant(value))
+    }
+
+    /// Its tree.
+    #[must_use]
+    pub fn node(&self) -> &Node {
+        &self.0
+    }
+}

@@ -1,0 +1,13 @@
+//! Kakeami: a compiler for manga's hand-hatched tone.
+
+pub mod diag;
+pub mod drawing;
+pub mod field;
+pub mod geom;
+pub mod loader;
+pub mod random;
+pub mod region;
+pub mod scene;
+pub mod span;
+pub mod stage;
+pub mod syntax;

@@ -1,0 +1,178 @@
+//! The types between the passes. Each is complete when it is made and never changed after.
+
+use crate::geom::{Angle, Point, Rect};
+
+/// Where the tiles of a paint lie.
+#[derive(Debug, Clone)]
+pub struct Sites {
+    /// The sites, in millimetres; their order is that of discovery, or row by row.
+    pub points: Vec<Point>,
+    /// The area that sites were asked for.
+    pub domain: Rect,
+    /// The domain grown by the bleed: every site but those of `points([…])` lies in it.
+    pub extent: Rect,
+    /// The distance of neighbouring sites that shapes are sized by, in millimetres; greater than zero.
+    pub spacing: f64,
+    /// Column and row of every site of a grid.
+    pub cells: Option<Vec<[i32; 2]>>,
+}
+
+/// Which tiles are neighbours.
+#[derive(Debug, Clone, Default)]
+pub struct Graph {
+    /// Where the neighbours of site i start in `neighbours`; one more than there are sites.
+    offsets: Vec<u32>,
+    /// The neighbours of every site, in the order of their indices.
+    neighbours: Vec<u32>,
+    /// The triangles behind the links, each with its least index first and then round in one sense, in order; empty
+    /// where links are not Delaunay's.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Graph {
+    /// From edges between `sites` sites, each named once in any order.
+    #[must_use]
+    pub fn new(sites: usize, edges: &[[u32; 2]], triangles: Vec<[u32; 3]>) -> Self {
+        let mut offsets = vec![0u32; sites + 1];
+        for edge in edges {
+            for &end in edge {
+                offsets[end as usize + 1] += 1;
+            }
+        }
+        for i in 0..sites {
+            offsets[i + 1] += offsets[i];
+        }
+        let mut next = offsets.clone();
+        let mut neighbours = vec![0u32; edges.len() * 2];
+        for &[a, b] in edges {
+            for (from, to) in [(a, b), (b, a)] {
+                neighbours[next[from as usize] as usize] = to;
+                next[from as usize] += 1;
+            }
+        }
+        for i in 0..sites {
+            neighbours[offsets[i] as usize..offsets[i + 1] as usize].sort_unstable();
+        }
+        Self { offsets, neighbours, triangles }
+    }
+
+    /// How many sites there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.offsets.len().saturating_sub(1)
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The neighbours of a site, in the order of their indices.
+    #[must_use]
+    pub fn neighbours(&self, site: usize) -> &[u32] {
+        &self.neighbours[self.offsets[site] as usize..self.offsets[site + 1] as usize]
+    }
+
+    /// Every edge once, its lesser end first, in order.
+    pub fn edges(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+        (0..self.len()).flat_map(move |i| {
+            let site = i as u32;
+            self.neighbours(i).iter().filter(move |&&j| j > site).map(move |&j| [site, j])
+        })
+    }
+}
+
+/// How every tile is turned: directions in [0, pi).
+#[derive(Debug, Clone)]
+pub struct Angles(pub Vec<Angle>);
+
+/// Where a tile lies relative to the painted region.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Standing {
+    /// Not drawn: outside, or left out by the edge rule.
+    Absent,
+    /// Drawn, and no outline comes near it.
+    Whole,
+    /// Drawn, and its strokes end at the region's outline.
+    Clipped,
+}
+
+/// How many layers a tile has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Layers {
+    /// Layers that are drawn in full, 0 to 4.
+    pub full: u8,
+    /// The share of the next layer's lines that is drawn, in [0, 1).
+    pub part: f64,
+}
+
+impl Layers {
+    /// Whether nothing is drawn and nothing hidden.
+    #[must_use]
+    pub fn is_blank(self) -> bool {
+        self.full == 0 && self.part <= 0.0
+    }
+}
+
+/// The tiles of a paint as cut: outline, layers and standing of every site.
+#[derive(Debug, Clone)]
+pub struct Tiles {
+    /// Corners of all outlines, one after the other, each clockwise on the page.
+    corners: Vec<Point>,
+    /// Where the outline of tile i ends in `corners`.
+    ends: Vec<u32>,
+    /// The field's value at the site, clamped to 0..=4.
+    pub k: Vec<f64>,
+    /// What of it is drawn.
+    pub layers: Vec<Layers>,
+    /// Where the tile lies relative to the region.
+    pub standing: Vec<Standing>,
+    /// Whether the site lies in the region: such tiles are measured.
+    pub inside: Vec<bool>,
+}
+
+impl Tiles {
+    /// From one ring of corners a tile; the lists have one entry a tile.
+    #[must_use]
+    pub fn new(
+        rings: impl IntoIterator<Item = Vec<Point>>,
+        k: Vec<f64>,
+        layers: Vec<Layers>,
+        standing: Vec<Standing>,
+        inside: Vec<bool>,
+    ) -> Self {
+        let mut corners = Vec::with_capacity(k.len() * 5);
+        let mut ends = Vec::with_capacity(k.len());
+        for ring in rings {
+            corners.extend_from_slice(&ring);
+            ends.push(corners.len() as u32);
+        }
+        Self { corners, ends, k, layers, standing, inside }
+    }
+
+    /// How many tiles there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
+    /// The outline of a tile; empty where an inset left nothing of it.
+    #[must_use]
+    pub fn outline(&self, tile: usize) -> &[Point] {
+        let start = if tile == 0 { 0 } else { self.ends[tile - 1] as usize };
+        &self.corners[start..self.ends[tile] as usize]
+    }
+
+    /// Whether a tile is drawn and hides what lies under it.
+    #[must_use]
+    pub fn is_drawn(&self, tile: usize) -> bool {
+        self.standing[tile] != Standing::Absent && !self.layers[tile].is_blank()
+    }
+}

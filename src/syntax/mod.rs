@@ -1,0 +1,3 @@
+//! The two front ends: text to [`ast::Document`] and back.
+
+pub mod ast;
