@@ -5,6 +5,7 @@ pub mod drawing;
 pub mod field;
 pub mod geom;
 pub mod loader;
+pub mod pass;
 pub mod random;
 pub mod region;
 pub mod scene;

@@ -64,6 +64,12 @@ impl Stream {
         (self.generator.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
     }
 
+    /// Two numbers in [-1, 1), of 32 random bits each, for the price of one draw.
+    pub fn signed_pair(&mut self) -> [f64; 2] {
+        let bits = self.generator.next_u64();
+        [(bits >> 32) as u32, bits as u32].map(|half| f64::from(half.cast_signed()) * (1.0 / (1u64 << 31) as f64))
+    }
+
     /// A whole number below `bound`, which is at least 1; without bias (Lemire 2019).
     pub fn below(&mut self, bound: u64) -> u64 {
         let bound = bound.max(1);

@@ -1,25 +1,36 @@
 //! Fields: values that vary over the page, as trees that can be evaluated anywhere.
 //!
 //! A field yields a number, a length in millimetres or an angle in radians; lowering has checked which. Points outside
-//! an image or beyond a gradient's ends take the nearest value.
+//! an image or beyond a gradient's ends take the nearest value. A value is never NaN, and infinite only where
+//! arithmetic overflows.
 
+mod build;
+mod evaluate;
 mod image;
+mod mask;
 mod noise;
 
 use std::sync::Arc;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::geom::{Length, Point, Rect};
 use crate::region::Region;
 
-pub use image::Image;
+pub use image::{Channel, Image, ImageError};
+pub use mask::mask;
 pub use noise::Noise;
 
 /// A value at every point of the page. Cheap to clone.
-#[derive(Debug, Clone, Serialize)]
-#[serde(transparent)]
-pub struct Field(Arc<Node>);
+#[derive(Debug, Clone)]
+pub struct Field(Arc<Tree>);
+
+#[derive(Debug)]
+struct Tree {
+    node: Node,
+    depth: u32,
+    cost: u64,
+}
 
 /// How a field's value is found.
 #[derive(Debug, Serialize)]
@@ -68,6 +79,8 @@ pub enum Node {
     Unary(Function, Field),
     /// A function of two fields.
     Binary(Operator, Field, Field),
+    /// A function of three fields.
+    Ternary(Blender, Field, Field, Field),
     /// Where the first is not zero the second, else the third.
     Select(Field, Field, Field),
 }
@@ -88,9 +101,9 @@ pub enum Function {
     Cos,
     /// Of an angle in radians.
     Tan,
-    /// The angle with this sine, in radians.
+    /// The angle with this sine, in radians; of the nearest of -1 and 1 where there is none.
     Asin,
-    /// The angle with this cosine, in radians.
+    /// The angle with this cosine, in radians; of the nearest of -1 and 1 where there is none.
     Acos,
     /// The angle with this tangent, in radians.
     Atan,
@@ -98,7 +111,7 @@ pub enum Function {
     Sqrt,
     /// e to the power of a.
     Exp,
-    /// Natural logarithm.
+    /// Natural logarithm; minus infinity of what is not above 0.
     Ln,
     /// The greatest whole number not above.
     Floor,
@@ -126,7 +139,7 @@ pub enum Operator {
     Divide,
     /// The remainder with the sign of b; 0 where b is 0.
     Remainder,
-    /// `a ^ b`
+    /// `a ^ b`; 0 where there is no real power.
     Power,
     /// The smaller.
     Min,
@@ -146,22 +159,42 @@ pub enum Operator {
     Or,
 }
 
+/// Functions of three values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Blender {
+    /// a, but not below b and not above c.
+    Clamp,
+    /// From a to b by the share c, which may lie outside [0, 1].
+    Mix,
+    /// 0 where c is at a or before it, 1 at b or beyond, smooth in between; a step where a is b.
+    Smoothstep,
+}
+
 impl Field {
-    /// From its tree.
-    #[must_use]
-    pub fn new(node: Node) -> Self {
-        Self(Arc::new(node))
-    }
-
-    /// The same everywhere.
-    #[must_use]
-    pub fn constant(value: f64) -> Self {
-        Self::new(Node::Constant(value))
-    }
-
     /// Its tree.
     #[must_use]
     pub fn node(&self) -> &Node {
-        &self.0
+        &self.0.node
+    }
+
+    /// The length of the longest way down the tree. Evaluating and dropping a field need stack in proportion to it, so
+    /// whoever builds fields from a scene's text bounds it.
+    #[must_use]
+    pub fn depth(&self) -> u32 {
+        self.0.depth
+    }
+
+    /// How many nodes are visited to find a value. Shared parts count wherever they stand, so doubling a field over and
+    /// over makes this grow without its text growing; whoever builds fields from a scene's text bounds it.
+    #[must_use]
+    pub fn cost(&self) -> u64 {
+        self.0.cost
+    }
+}
+
+impl Serialize for Field {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.node().serialize(serializer)
     }
 }

@@ -1,0 +1,146 @@
+//! How many tiles a placement may have, and the words for too many.
+
+use crate::diag::{Code, Diagnostic};
+use crate::scene::{Amount, GridSize, Placement};
+use crate::span::Span;
+
+/// Sites are named by 32-bit indices, and their links by as many again: no `--limit` goes beyond this.
+const MOST_TILES: u64 = 1 << 29;
+
+/// Cells of a search grid for every tile that is allowed. Lattices of cells are at most this much finer than the tiles.
+const CELLS_A_TILE: f64 = 32.0;
+
+/// The limit of tiles.
+pub(super) struct Budget {
+    tiles: u64,
+    span: Span,
+}
+
+impl Budget {
+    pub(super) fn new(tiles: u64, span: Span) -> Self {
+        Self { tiles: tiles.min(MOST_TILES), span }
+    }
+
+    /// Asks for an estimated number of tiles.
+    pub(super) fn expect(&self, placement: &Placement, tiles: f64) -> Result<(), Diagnostic> {
+        if tiles <= self.tiles as f64 {
+            return Ok(());
+        }
+        let limit = grouped(self.tiles as f64);
+        let about = grouped(rounded(tiles));
+        let call = describe(placement);
+        Err(self.exceeded(placement, format!("`{call}` would place about {about} tiles; the limit is {limit}")))
+    }
+
+    /// Asks for one tile more than the `tiles` there are.
+    pub(super) fn one_more(&self, placement: &Placement, tiles: usize) -> Result<(), Diagnostic> {
+        if (tiles as u64) < self.tiles {
+            return Ok(());
+        }
+        let limit = grouped(self.tiles as f64);
+        let call = describe(placement);
+        Err(self.exceeded(placement, format!("`{call}` places more than {limit} tiles, which is the limit")))
+    }
+
+    /// A search grid of `columns * rows` empty cells.
+    pub(super) fn grid(&self, placement: &Placement, columns: f64, rows: f64) -> Result<Vec<u32>, Diagnostic> {
+        let cells = columns * rows;
+        let most = self.tiles as f64 * CELLS_A_TILE + 65_536.0;
+        let mut grid = Vec::new();
+        if cells <= most && grid.try_reserve_exact(cells as usize).is_ok() {
+            grid.resize(cells as usize, u32::MAX);
+            return Ok(grid);
+        }
+        let limit = grouped(self.tiles as f64);
+        let call = describe(placement);
+        let about = grouped(rounded(cells));
+        Err(self.exceeded(
+            placement,
+            format!("`{call}` would search a grid of about {about} cells, too many for a limit of {limit} tiles"),
+        ))
+    }
+
+    fn exceeded(&self, placement: &Placement, message: String) -> Diagnostic {
+        let remedy = match placement {
+            Placement::Poisson { .. } => "use a larger radius",
+            Placement::Uniform { amount: Amount::Count { .. } } => "use a smaller count",
+            Placement::Uniform { amount: Amount::AsMany(_) | Amount::Density { .. } } => "use a lower density",
+            Placement::Grid(GridSize::Spacing(_)) | Placement::Hex { .. } => "use a larger spacing",
+            Placement::Grid(GridSize::Cells { .. }) => "use fewer columns and rows",
+            Placement::Points(_) => "use fewer points",
+        };
+        let hint = if self.tiles < MOST_TILES {
+            format!("`--limit tiles=N` lifts it, or {remedy}")
+        } else {
+            format!("{remedy}; no more tiles than these can be counted")
+        };
+        Diagnostic::error(Code::Limit, self.span, message).label("too many tiles").hint(hint)
+    }
+}
+
+/// A placement as it might have been written.
+fn describe(placement: &Placement) -> String {
+    match placement {
+        Placement::Poisson { radius, .. } => format!("poisson(radius: {})", millimetres(radius.to_mm())),
+        Placement::Uniform { amount: Amount::Count { count, .. } } => format!("uniform(count: {count})"),
+        Placement::Uniform { amount: Amount::AsMany(inner) } => format!("uniform(count: {})", describe(inner)),
+        Placement::Uniform { amount: Amount::Density { .. } } => "uniform(density)".to_owned(),
+        Placement::Grid(GridSize::Spacing(spacing)) => format!("grid(spacing: {})", millimetres(spacing.to_mm())),
+        Placement::Grid(GridSize::Cells { columns, rows }) => format!("grid(columns: {columns}, rows: {rows})"),
+        Placement::Hex { spacing } => format!("hex(spacing: {})", millimetres(spacing.to_mm())),
+        Placement::Points(_) => "points([...])".to_owned(),
+    }
+}
+
+/// A length with as many digits as help a reader.
+fn millimetres(value: f64) -> String {
+    let short = (value * 1e6).round() / 1e6;
+    if short > 0.0 { format!("{short}mm") } else { format!("{value:e}mm") }
+}
+
+/// A large number with three digits that count.
+fn rounded(value: f64) -> f64 {
+    let mut unit = 1.0;
+    while value / unit >= 1000.0 && unit < 1e15 {
+        unit *= 10.0;
+    }
+    (value / unit).ceil() * unit
+}
+
+/// A number with commas between its thousands.
+fn grouped(value: f64) -> String {
+    if !(value < 1e15) {
+        return "more than 1,000,000,000,000,000".to_owned();
+    }
+    let digits = (value as u64).to_string();
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_grouped() {
+        let cases = [(0.0, "0"), (999.0, "999"), (1000.0, "1,000"), (2e6, "2,000,000"), (25_162_500.0, "25,200,000")];
+        for (number, text) in cases {
+            assert_eq!(grouped(rounded(number)), text);
+        }
+        assert_eq!(grouped(rounded(f64::INFINITY)), "more than 1,000,000,000,000,000");
+        assert_eq!(grouped(rounded(f64::NAN)), "more than 1,000,000,000,000,000");
+    }
+
+    #[test]
+    fn lengths_are_short() {
+        assert_eq!(millimetres(25.4 / 3.0), "8.466667mm");
+        assert_eq!(millimetres(0.001), "0.001mm");
+        assert_eq!(millimetres(1e-9), "1e-9mm");
+    }
+}

@@ -1,0 +1,124 @@
+//! Placement: where the tiles of a paint lie.
+//!
+//! In: a paint and the canvas. Out: [`Sites`] over the paint's domain and its bleed. How many tiles there will be is
+//! estimated before anything is allocated, so that a slip in a radius ends in a diagnostic and not in all the memory.
+//! A placement is one file here and one line in [`find`].
+
+mod budget;
+mod grid;
+mod hex;
+mod poisson;
+mod uniform;
+
+use crate::diag::Diagnostic;
+use crate::geom::{Point, Rect};
+use crate::random::{Key, Stream};
+use crate::scene::{Amount, Canvas, Domain, GridSize, Limits, Paint, Placement};
+use crate::stage::Sites;
+use budget::Budget;
+
+/// Finds the sites of a paint. There may be none, for instance where the domain is empty.
+///
+/// # Errors
+/// Where the placement would find more tiles than the limits allow; the diagnostic stands at the tone's `place`.
+pub fn place(paint: &Paint, canvas: &Canvas, limits: &Limits) -> Result<Sites, Diagnostic> {
+    let tone = &paint.tone;
+    let domain = if is_counted(&tone.place) {
+        paint.region.bounds()
+    } else {
+        match tone.domain {
+            Domain::Canvas => canvas.bounds(),
+            Domain::Region => paint.region.bounds(),
+        }
+    };
+    let ground = Ground {
+        domain: if domain.is_empty() { Rect::new(Point::default(), Point::default()) } else { domain },
+        bleed: tone.bleed.map(|bleed| bleed.to_mm()),
+        seed: paint.seed,
+        name: &paint.name,
+        budget: Budget::new(limits.tiles, tone.place_span),
+    };
+    find(&tone.place, &ground)
+}
+
+/// Whether a placement has so many tiles in its domain, which is then the region's box and has no bleed of its own.
+fn is_counted(placement: &Placement) -> bool {
+    match placement {
+        Placement::Uniform { amount: Amount::Count { .. } | Amount::AsMany(_) }
+        | Placement::Grid(GridSize::Cells { .. }) => true,
+        Placement::Uniform { amount: Amount::Density { .. } }
+        | Placement::Poisson { .. }
+        | Placement::Grid(GridSize::Spacing(_))
+        | Placement::Hex { .. }
+        | Placement::Points(_) => false,
+    }
+}
+
+/// The sites that one placement finds.
+fn find(placement: &Placement, ground: &Ground<'_>) -> Result<Sites, Diagnostic> {
+    if ground.domain.is_empty() && !matches!(placement, Placement::Points(_)) {
+        return Ok(ground.sites(Vec::new(), FALLBACK_SPACING, 0.0));
+    }
+    match placement {
+        Placement::Poisson { radius, tries, density } => {
+            let disk = poisson::Disk { radius: radius.to_mm(), tries: *tries, density: density.as_ref() };
+            poisson::place(placement, ground, &disk)
+        }
+        Placement::Uniform { amount } => uniform::place(placement, ground, amount),
+        Placement::Grid(size) => grid::place(placement, ground, *size),
+        Placement::Hex { spacing } => hex::place(placement, ground, spacing.to_mm()),
+        Placement::Points(points) => {
+            ground.budget.expect(placement, points.len() as f64)?;
+            let spacing = ground.mean_spacing(points.len());
+            Ok(ground.sites(points.clone(), spacing, spacing))
+        }
+    }
+}
+
+/// What spacing is called where there is neither an area nor a length to take it from, in millimetres. Nothing is drawn
+/// at such a size.
+const FALLBACK_SPACING: f64 = 1.0;
+
+/// How far beyond an edge a lattice site may lie by rounding and still be on it, as a share of the spacing.
+const ON_EDGE: f64 = 1e-9;
+
+/// Where sites are looked for, and the streams that random ones are drawn from.
+struct Ground<'a> {
+    domain: Rect,
+    bleed: Option<f64>,
+    seed: u64,
+    name: &'a str,
+    budget: Budget,
+}
+
+impl Ground<'_> {
+    /// The domain grown by the bleed, or by `default` where the tone says nothing about it.
+    fn extent(&self, default: f64) -> Rect {
+        self.domain.grown(self.bleed.unwrap_or(default))
+    }
+
+    /// The sequential stream of one purpose.
+    fn stream(&self, purpose: &str) -> Stream {
+        Key { seed: self.seed, name: self.name, purpose }.stream()
+    }
+
+    /// The spacing of `count` tiles that share the domain's area.
+    fn mean_spacing(&self, count: usize) -> f64 {
+        let area = self.domain.width() * self.domain.height();
+        let spacing = (area / count.max(1) as f64).sqrt();
+        if spacing > 0.0 { spacing } else { FALLBACK_SPACING }
+    }
+
+    /// Sites without cells.
+    fn sites(&self, points: Vec<Point>, spacing: f64, default_bleed: f64) -> Sites {
+        Sites { points, domain: self.domain, extent: self.extent(default_bleed), spacing, cells: None }
+    }
+}
+
+/// A point that is uniform in a box.
+fn point_in(rect: &Rect, stream: &mut Stream) -> Point {
+    // The sum may round up to the far side, which belongs to the next box.
+    let mut between = |min: f64, max: f64| (min + stream.unit() * (max - min)).min(max.next_down()).max(min);
+    let x = between(rect.min.x, rect.max.x);
+    Point::new(x, between(rect.min.y, rect.max.y))
+}

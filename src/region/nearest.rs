@@ -1,0 +1,84 @@
+//! The nearest point of an outline: a tree of boxes over its segments.
+//!
+//! Segments that follow each other on a ring lie near each other, so consecutive ones share a box, consecutive boxes
+//! share a larger one, and so on up; no sorting is needed.
+
+use super::index::Segment;
+use crate::geom::{Point, Rect};
+
+/// Children of a box.
+const FAN: usize = 8;
+
+/// The tree.
+#[derive(Debug)]
+pub(super) struct Nearest {
+    /// Boxes by level, from those over segments up to the last level, which has at most [`FAN`].
+    levels: Vec<Vec<Rect>>,
+}
+
+impl Nearest {
+    pub(super) fn new(segments: &[Segment]) -> Self {
+        let around = |boxes: &[Rect]| boxes.iter().fold(Rect::EMPTY, |all, b| all.including(b.min).including(b.max));
+        let of_segments = |group: &[Segment]| group.iter().fold(Rect::EMPTY, |all, s| all.including(s.a).including(s.b));
+        let mut level: Vec<Rect> = segments.chunks(FAN).map(of_segments).collect();
+        let mut levels = Vec::new();
+        while level.len() > FAN {
+            let above = level.chunks(FAN).map(around).collect();
+            levels.push(std::mem::replace(&mut level, above));
+        }
+        levels.push(level);
+        Self { levels }
+    }
+
+    /// The square of the distance from `p` to the nearest of the segments that the tree was made of; infinite where
+    /// there is none.
+    pub(super) fn distance_squared(&self, segments: &[Segment], p: Point) -> f64 {
+        let mut best = f64::INFINITY;
+        let top = self.levels.len() - 1;
+        self.descend(top, 0..self.levels[top].len(), segments, p, &mut best);
+        best
+    }
+
+    /// Looks into the boxes of one level, the nearest first. As deep as the tree is high.
+    fn descend(&self, level: usize, boxes: std::ops::Range<usize>, segments: &[Segment], p: Point, best: &mut f64) {
+        let mut near = [(f64::INFINITY, 0); FAN];
+        let mut count = 0;
+        for i in boxes {
+            let distance = to_box(&self.levels[level][i], p);
+            if distance < *best {
+                // Sorted as it grows; a box that is no nearer than another stays behind it.
+                let at = near[..count].partition_point(|&(d, _)| d <= distance);
+                near.copy_within(at..count, at + 1);
+                near[at] = (distance, i);
+                count += 1;
+            }
+        }
+        for &(distance, i) in &near[..count] {
+            if distance >= *best {
+                break;
+            }
+            let start = i * FAN;
+            if level == 0 {
+                for segment in &segments[start..segments.len().min(start + FAN)] {
+                    *best = best.min(to_segment(segment, p));
+                }
+            } else {
+                let end = self.levels[level - 1].len().min(start + FAN);
+                self.descend(level - 1, start..end, segments, p, best);
+            }
+        }
+    }
+}
+
+fn to_box(area: &Rect, p: Point) -> f64 {
+    let x = (area.min.x - p.x).max(p.x - area.max.x).max(0.0);
+    let y = (area.min.y - p.y).max(p.y - area.max.y).max(0.0);
+    x * x + y * y
+}
+
+fn to_segment(segment: &Segment, p: Point) -> f64 {
+    let way = segment.b - segment.a;
+    let length_squared = way.length_squared();
+    let share = if length_squared > 0.0 { ((p - segment.a).dot(way) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
+    p.distance_squared(segment.a + way * share)
+}
