@@ -6,6 +6,7 @@ pub mod drawing;
 pub mod field;
 pub mod geom;
 pub mod loader;
+pub mod lower;
 pub mod pass;
 pub mod random;
 pub mod region;

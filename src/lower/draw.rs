@@ -55,7 +55,7 @@ pub(super) fn is_drawing(kind: &StatementKind) -> bool {
 }
 
 /// Reports statements that stand where they may not.
-pub(super) fn check_order(cx: &mut Cx<'_, '_>, statements: &[Statement], main: bool) {
+pub(super) fn check_order<'a>(cx: &mut Cx<'a, '_>, statements: &'a [Statement], main: bool) {
     let mut first_drawing: Option<Span> = None;
     let mut seen: BTreeMap<&'static str, Span> = BTreeMap::new();
     for statement in statements {

@@ -155,7 +155,7 @@ fn name<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span: Span, 
     Value::UNKNOWN
 }
 
-fn name_hint(cx: &Cx<'_, '_>, scope: &Rc<Scope<'_>>, name: &str, slot: Slot) -> Option<String> {
+fn name_hint<'a>(cx: &Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, slot: Slot) -> Option<String> {
     if matches!(name, "x" | "y") {
         return Some(format!("`{name}` is a point's place in fields: `field f = …`"));
     }
@@ -371,14 +371,15 @@ fn check_arguments<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, arguments: &'
     }
 }
 
-fn unknown_call(cx: &mut Cx<'_, '_>, scope: &Rc<Scope<'_>>, name: &str, span: Span) {
+fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span: Span) {
     if vocabulary::is_later(name) {
         cx.report(call::not_yet(name, span));
         return;
     }
-    let module = &cx.modules[scope.module];
+    let modules = cx.modules;
+    let module = &modules[scope.module];
     let mut known: Vec<&str> = module.functions.keys().copied().collect();
-    known.extend(module.opened.iter().flat_map(|&opened| cx.modules[opened].functions.keys().copied()));
+    known.extend(module.opened.iter().flat_map(|&opened| modules[opened].functions.keys().copied()));
     known.extend(vocabulary::callables());
     let hint = match tone::find(cx, scope.module, name) {
         Some(_) => Some(format!("`{name}` is a tone: `paint REGION with {name}(…)`")),

@@ -51,11 +51,11 @@ pub(super) fn image(call: &mut Call<'_, '_, '_>, channel: &'static str) -> Optio
         _ => Channel::Luminance,
     };
     let most = call.cx.config.limits.megapixels.saturating_mul(1_000_000);
-    let image = match Image::decode(&bytes, chosen, most) {
+    let image = match Image::decode_channel(&bytes, chosen, most) {
         Ok(image) => Some(Arc::new(image)),
         Err(error) => {
             let span = call.span_of("file");
-            let message = format!("`{}` is not a picture that can be read: {error}", key.0);
+            let message = format!("`{}`: {error}", key.0);
             call.cx.report_value(Diagnostic::error(Code::Image, span, message).hint("pictures are PNG or JPEG"));
             None
         }

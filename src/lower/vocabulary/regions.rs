@@ -205,6 +205,6 @@ fn mask(call: &mut Call<'_, '_, '_>) -> Option<Value> {
     };
     let image = files::image(call, "luminance")?;
     not_empty(call, "no part of the image is darker than the threshold", |_| {
-        Some(crate::region::mask(&image, threshold, fit))
+        Some(crate::field::mask(&image, threshold, fit))
     })
 }
