@@ -2,3 +2,5 @@
 
 pub mod ast;
 pub mod format;
+pub mod kake;
+pub mod toml;
