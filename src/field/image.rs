@@ -175,8 +175,7 @@ fn of_pixels<const N: usize, T: Stored>(values: &[T], channel: Channel) -> Vec<f
     pixels
         .iter()
         .map(|pixel| {
-            let alpha =
-                if N % 2 == 0 { pixel[N - 1].into() as f32 / T::MOST as f32 } else { 1.0 };
+            let alpha = if N % 2 == 0 { pixel[N - 1].into() as f32 / T::MOST as f32 } else { 1.0 };
             let [red, green, blue] = if N > 2 { [pixel[0], pixel[1], pixel[2]] } else { [pixel[0]; 3] };
             let colour = match channel {
                 Channel::Luminance if N > 2 => {

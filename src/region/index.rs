@@ -78,16 +78,8 @@ impl Index {
         }
         let (columns, rows) = lines(&bounds, segments.len());
         let cell = [(bounds.width() / columns as f64).max(1e-9), (bounds.height() / rows as f64).max(1e-9)];
-        let mut index = Self {
-            bounds,
-            columns,
-            rows,
-            cell,
-            segments,
-            offsets: Vec::new(),
-            listed: Vec::new(),
-            inside: Vec::new(),
-        };
+        let mut index =
+            Self { bounds, columns, rows, cell, segments, offsets: Vec::new(), listed: Vec::new(), inside: Vec::new() };
         if !index.segments.is_empty() {
             index.list_segments();
             index.mark_middles();
@@ -344,10 +336,7 @@ fn lines(bounds: &Rect, segments: usize) -> (usize, usize) {
 /// Whether a segment and a closed box share a point.
 fn meets_box(segment: &Segment, area: &Rect) -> bool {
     let Segment { a, b } = *segment;
-    let apart = a.y > area.max.y
-        || b.y < area.min.y
-        || a.x.min(b.x) > area.max.x
-        || a.x.max(b.x) < area.min.x;
+    let apart = a.y > area.max.y || b.y < area.min.y || a.x.min(b.x) > area.max.x || a.x.max(b.x) < area.min.x;
     if apart {
         return false;
     }
