@@ -1,5 +1,6 @@
 //! Kakeami: a compiler for manga's hand-hatched tone.
 
+pub mod back;
 pub mod diag;
 pub mod drawing;
 pub mod field;

@@ -136,7 +136,7 @@ impl Tiles {
     /// From one ring of corners a tile; the lists have one entry a tile.
     #[must_use]
     pub fn new(
-        rings: impl IntoIterator<Item = Vec<Point>>,
+        rings: impl IntoIterator<Item = impl AsRef<[Point]>>,
         k: Vec<f64>,
         layers: Vec<Layers>,
         standing: Vec<Standing>,
@@ -145,7 +145,7 @@ impl Tiles {
         let mut corners = Vec::with_capacity(k.len() * 5);
         let mut ends = Vec::with_capacity(k.len());
         for ring in rings {
-            corners.extend_from_slice(&ring);
+            corners.extend_from_slice(ring.as_ref());
             ends.push(corners.len() as u32);
         }
         Self { corners, ends, k, layers, standing, inside }

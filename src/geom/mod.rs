@@ -4,6 +4,7 @@
 //! Trigonometry goes through libm, so that every machine gets the same bits.
 
 mod angle;
+pub mod clip;
 mod length;
 mod point;
 mod polygon;

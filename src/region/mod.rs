@@ -9,6 +9,8 @@ mod curve;
 mod index;
 mod nearest;
 mod overlay;
+#[cfg(test)]
+mod tests;
 
 use std::sync::{Arc, OnceLock};
 

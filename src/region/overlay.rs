@@ -90,13 +90,31 @@ fn to_grid<'a>(rings: impl IntoIterator<Item = &'a Vec<Point>>) -> Vec<Ring> {
         .collect()
 }
 
+/// Rings begin at their uppermost point (of several the one farthest left) and polygons stand in the order of these
+/// points, so that equal areas are equal lists.
 fn to_polygons(shapes: Vec<Vec<Ring>>) -> Vec<Polygon> {
-    let ring = |ring: Ring| ring.into_iter().map(|p| Point::new(p.x as f64 * GRID, p.y as f64 * GRID)).collect();
+    let from_grid = |mut ring: Ring| -> Vec<Point> {
+        let first = (0..ring.len()).min_by_key(|&i| key(ring[i])).unwrap_or(0);
+        ring.rotate_left(first);
+        ring.into_iter().map(|p| Point::new(p.x as f64 * GRID, p.y as f64 * GRID)).collect()
+    };
+    let mut shapes: Vec<Vec<Ring>> = shapes.into_iter().filter(|shape| !shape.is_empty()).collect();
+    let least = |ring: &Ring| ring.iter().map(|&p| key(p)).min();
+    for shape in &mut shapes {
+        if let Some((_, holes)) = shape.split_first_mut() {
+            holes.sort_by_key(least);
+        }
+    }
+    shapes.sort_by_key(|shape| shape.first().and_then(least));
     shapes
         .into_iter()
         .filter_map(|shape| {
-            let mut rings = shape.into_iter().map(ring);
+            let mut rings = shape.into_iter().map(from_grid);
             Some(Polygon { outer: rings.next()?, holes: rings.collect() })
         })
         .collect()
+}
+
+fn key(p: IntPoint<i64>) -> (i64, i64) {
+    (p.y, p.x)
 }

@@ -1,0 +1,382 @@
+//! SVG: a drawing goes in, a page in millimetres comes out, as a plotter and an editor want it.
+//!
+//! Groups and paints become Inkscape layers, and within them one group holds all marks of one pen. Strokes are strokes
+//! and end where they end: there are no clip paths, masks or white covers. Each tile is one path; from
+//! [`MANY`] paths on [`TOGETHER`] tiles share one, for there are readers that refuse a million elements. Text is made
+//! by several threads in pieces that do not depend on their number.
+
+use std::io::{self, Write};
+
+use rayon::prelude::*;
+use svg::node::Text;
+use svg::node::element::{Element, Group, Rectangle, SVG};
+
+use super::metadata::{ELEMENT, Metadata, NAMESPACE};
+use super::number;
+use crate::drawing::{Drawing, Layer};
+use crate::geom::{Length, Point, ring_area};
+use crate::scene::{Cap, Colour};
+
+/// Up to this number of tiles, longer strokes and areas each has a path of its own.
+const MANY: usize = 20_000;
+/// How many share a path where there are more.
+const TOGETHER: usize = 64;
+/// Strokes of a path that one thread writes at a time.
+const PIECE: usize = 8_192;
+/// Points that one thread writes at a time, unless a single piece has more.
+const PORTION: usize = 16_384;
+/// Portions that are held as text at a time.
+const AT_ONCE: usize = 32;
+/// After so many steps that are given relative to the point before, a point is given absolutely: readers that add up in
+/// single precision drift less than a step of the rounding.
+const ANCHOR: usize = 64;
+
+/// Writes an SVG.
+///
+/// # Errors
+/// What `out` answers.
+pub fn write(drawing: &Drawing, metadata: Option<&Metadata>, out: &mut dyn Write) -> io::Result<()> {
+    write_head(drawing, metadata, out)?;
+    let together = if count_paths(drawing) > MANY { TOGETHER } else { 1 };
+    // The groups that are open, outermost first, and whether each is a paint's: a group may have the same name.
+    let mut open: Vec<(&str, bool)> = Vec::new();
+    let mut ids = 0;
+    for layer in drawing.layers.iter().filter(|layer| layer.marks() > 0) {
+        let groups = layer.groups.iter().map(|name| (name.as_str(), false));
+        let names: Vec<(&str, bool)> = groups.chain([(layer.name.as_str(), true)]).collect();
+        let shared = open.iter().zip(&names).take_while(|(a, b)| a == b).count();
+        close(open.len() - shared, out)?;
+        open.truncate(shared);
+        for &(name, paint) in &names[shared..] {
+            ids += 1;
+            let group = Group::new()
+                .set("inkscape:groupmode", "layer")
+                .set("inkscape:label", xml_text(name))
+                .set("id", format!("layer{ids}"));
+            writeln!(out, "{}", open_tag(&group))?;
+            open.push((name, paint));
+        }
+        // The whole layer is made translucent at once: where its strokes cross they are one ink, as in the raster.
+        let translucent = layer.ink.a < 255;
+        if translucent {
+            writeln!(out, "{}", open_tag(&Group::new().set("opacity", opacity(layer.ink))))?;
+        }
+        write_layer(layer, together, out)?;
+        close(usize::from(translucent), out)?;
+    }
+    close(open.len(), out)?;
+    out.write_all(b"</svg>\n")?;
+    out.flush()
+}
+
+fn write_head(drawing: &Drawing, metadata: Option<&Metadata>, out: &mut dyn Write) -> io::Result<()> {
+    let page = &drawing.page;
+    let (width, height) = (number::text(page.width.to_mm()), number::text(page.height.to_mm()));
+    let root = SVG::new()
+        .set("xmlns:inkscape", "http://www.inkscape.org/namespaces/inkscape")
+        .set("width", format!("{width}mm"))
+        .set("height", format!("{height}mm"))
+        .set("viewBox", format!("0 0 {width} {height}"));
+    writeln!(out, "{}", open_tag(&root))?;
+    if let Some(metadata) = metadata {
+        let name = format!("kakeami:{ELEMENT}");
+        let mut picture = Element::new(name);
+        svg::Node::assign(&mut picture, "xmlns:kakeami", NAMESPACE);
+        svg::Node::append(&mut picture, Text::new(metadata.to_json()?));
+        writeln!(out, "<metadata>{picture}</metadata>")?;
+    }
+    if let Some(paper) = page.paper {
+        let mut rect =
+            Rectangle::new().set("id", "paper").set("width", width).set("height", height).set("fill", paper.hex());
+        if paper.a < 255 {
+            rect = rect.set("fill-opacity", opacity(paper));
+        }
+        writeln!(out, "{rect}")?;
+    }
+    Ok(())
+}
+
+/// The start tag of an element without children.
+fn open_tag(element: &Element) -> String {
+    let mut text = element.to_string();
+    if let Some(start) = text.strip_suffix("/>") {
+        text = format!("{start}>");
+    }
+    text
+}
+
+fn close(groups: usize, out: &mut dyn Write) -> io::Result<()> {
+    for _ in 0..groups {
+        out.write_all(b"</g>\n")?;
+    }
+    Ok(())
+}
+
+/// A name without the characters that XML forbids; the writer escapes the rest.
+fn xml_text(name: &str) -> String {
+    name.chars()
+        .map(|c| match c {
+            '\t' | '\n' | '\r' => ' ',
+            c if c.is_control() => char::REPLACEMENT_CHARACTER,
+            '\u{fffe}' | '\u{ffff}' => char::REPLACEMENT_CHARACTER,
+            c => c,
+        })
+        .collect()
+}
+
+/// A colour's alpha from 0 to 1.
+fn opacity(colour: Colour) -> String {
+    number::text(f64::from(colour.a) / 255.0)
+}
+
+/// How many paths there are with one for each tile, longer stroke and area.
+fn count_paths(drawing: &Drawing) -> usize {
+    let count = |layer: &Layer| {
+        let strokes: usize = layer.strokes.iter().map(|s| s.bundle_ends.len() + s.polylines.len()).sum();
+        let dots: usize = layer.dots.iter().map(|d| d.bundle_ends.len()).sum();
+        layer.areas.len() + strokes + dots
+    };
+    drawing.layers.iter().map(count).sum()
+}
+
+fn write_layer(layer: &Layer, together: usize, out: &mut dyn Write) -> io::Result<()> {
+    if !layer.areas.is_empty() {
+        let group = Group::new().set("fill", layer.ink.hex()).set("fill-rule", "evenodd");
+        write_group(&group, &area_pieces(&layer.areas, together), out)?;
+    }
+    for strokes in &layer.strokes {
+        let mut pieces = bundle_pieces(&strokes.lines, &strokes.bundle_ends, together, Marks::Lines);
+        pieces.extend(strokes.polylines.chunks(together).map(|lines| Piece::whole(Marks::Polylines(lines))));
+        write_group(&stroke_group(layer.ink, strokes.pen, strokes.cap), &pieces, out)?;
+    }
+    for dots in &layer.dots {
+        // A stroke of no length with round ends is a dot to every reader, and to a plotter a touch of the pen.
+        let pieces = bundle_pieces(&dots.centres, &dots.bundle_ends, together, Marks::Dots);
+        write_group(&stroke_group(layer.ink, dots.radius * 2.0, Cap::Round), &pieces, out)?;
+    }
+    Ok(())
+}
+
+fn stroke_group(ink: Colour, pen: Length, cap: Cap) -> Group {
+    // A pen that rounds to nothing would not be drawn at all.
+    let width = number::units_text(number::units(pen.to_mm()).max(1));
+    let cap = match cap {
+        Cap::Butt => "butt",
+        Cap::Round => "round",
+    };
+    Group::new()
+        .set("fill", "none")
+        .set("stroke", ink.hex())
+        .set("stroke-width", width)
+        .set("stroke-linecap", cap)
+        .set("stroke-linejoin", "round")
+}
+
+/// What one thread writes without a break: a path or a part of one.
+struct Piece<'a> {
+    marks: Marks<'a>,
+    /// Whether the path starts with it.
+    starts: bool,
+    /// Whether the path ends with it.
+    ends: bool,
+}
+
+#[derive(Clone, Copy)]
+enum Marks<'a> {
+    Lines(&'a [[Point; 2]]),
+    Polylines(&'a [Vec<Point>]),
+    Dots(&'a [Point]),
+    /// One area of any number of rings.
+    Area(&'a [Vec<Point>]),
+    /// Areas of one ring each.
+    Rings(&'a [Vec<Vec<Point>>]),
+}
+
+impl<'a> Piece<'a> {
+    fn whole(marks: Marks<'a>) -> Self {
+        Self { marks, starts: true, ends: true }
+    }
+
+    /// How many points it has.
+    fn points(&self) -> usize {
+        match self.marks {
+            Marks::Lines(lines) => lines.len() * 2,
+            Marks::Polylines(lines) => lines.iter().map(Vec::len).sum(),
+            Marks::Dots(centres) => centres.len(),
+            Marks::Area(rings) => rings.iter().map(Vec::len).sum(),
+            Marks::Rings(areas) => areas.iter().flatten().map(Vec::len).sum(),
+        }
+    }
+}
+
+/// Paths of `together` bundles each; `ends` says where each bundle ends.
+fn bundle_pieces<'a, T>(
+    items: &'a [T],
+    ends: &[usize],
+    together: usize,
+    marks: fn(&'a [T]) -> Marks<'a>,
+) -> Vec<Piece<'a>> {
+    let mut pieces = Vec::with_capacity(ends.len().div_ceil(together));
+    let mut start = 0;
+    for &end in ends.chunks(together).filter_map(|bundles| bundles.last()) {
+        let path = items.get(start..end).unwrap_or_default();
+        let last = path.len().div_ceil(PIECE).saturating_sub(1);
+        pieces.extend(path.chunks(PIECE).enumerate().map(|(i, part)| Piece {
+            marks: marks(part),
+            starts: i == 0,
+            ends: i == last,
+        }));
+        start = end;
+    }
+    pieces
+}
+
+/// A path for each area; where there are many, simple ones that follow each other share one.
+fn area_pieces(areas: &[Vec<Vec<Point>>], together: usize) -> Vec<Piece<'_>> {
+    let is_simple = |area: &Vec<Vec<Point>>| together > 1 && area.len() == 1;
+    areas
+        .chunk_by(|a, b| is_simple(a) && is_simple(b))
+        .flat_map(|run| run.chunks(together))
+        .map(|run| match run {
+            [area] => Piece::whole(Marks::Area(area)),
+            areas => Piece::whole(Marks::Rings(areas)),
+        })
+        .collect()
+}
+
+/// Writes the paths of one pen, the text of several portions being made at a time.
+fn write_group(group: &Group, pieces: &[Piece<'_>], out: &mut dyn Write) -> io::Result<()> {
+    if pieces.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "{}", open_tag(group))?;
+    let mut portions = Vec::new();
+    let (mut start, mut points) = (0, 0);
+    for (i, piece) in pieces.iter().enumerate() {
+        points += piece.points();
+        if points >= PORTION {
+            portions.push(&pieces[start..=i]);
+            (start, points) = (i + 1, 0);
+        }
+    }
+    portions.push(&pieces[start..]);
+    for several in portions.chunks(AT_ONCE) {
+        let texts: Vec<Vec<u8>> = several.par_iter().map(|pieces| portion_text(pieces)).collect();
+        for text in texts {
+            out.write_all(&text)?;
+        }
+    }
+    close(1, out)
+}
+
+fn portion_text(pieces: &[Piece<'_>]) -> Vec<u8> {
+    let mut text = Vec::with_capacity(pieces.iter().map(Piece::points).sum::<usize>() * 16 + pieces.len() * 16);
+    for piece in pieces {
+        if piece.starts {
+            // Rings of several areas keep their inside where they overlap: they run the same way round.
+            let several = matches!(piece.marks, Marks::Rings(_));
+            text.extend_from_slice(if several { b"<path fill-rule=\"nonzero\" d=\"" } else { b"<path d=\"" });
+        }
+        match piece.marks {
+            Marks::Lines(lines) => lines.iter().for_each(|line| write_line(line, &mut text)),
+            Marks::Polylines(lines) => lines.iter().for_each(|line| write_polyline(line, &mut text)),
+            Marks::Dots(centres) => centres.iter().for_each(|&centre| write_line(&[centre, centre], &mut text)),
+            Marks::Area(rings) => rings.iter().for_each(|ring| write_ring(ring.iter().copied(), &mut text)),
+            Marks::Rings(areas) => areas.iter().flatten().for_each(|ring| {
+                if ring_area(ring) < 0.0 {
+                    write_ring(ring.iter().rev().copied(), &mut text);
+                } else {
+                    write_ring(ring.iter().copied(), &mut text);
+                }
+            }),
+        }
+        if piece.ends {
+            text.extend_from_slice(b"\"/>\n");
+        }
+    }
+    text
+}
+
+/// A point in units of the number format.
+fn units(p: Point) -> [i64; 2] {
+    [number::units(p.x), number::units(p.y)]
+}
+
+/// Writes a command with two numbers to the beginning of `text` and says how many bytes it took.
+#[inline]
+fn put_pair(command: u8, [x, y]: [i64; 2], text: &mut [u8]) -> usize {
+    text[0] = command;
+    let mut at = 1 + number::put(x, &mut text[1..]);
+    // A sign separates as well as a space does.
+    if y >= 0 {
+        text[at] = b' ';
+        at += 1;
+    }
+    at + number::put(y, &mut text[at..])
+}
+
+/// Writes the step to a point at a distance in units to the beginning of `text` and says how many bytes it took.
+#[inline]
+fn put_step([x, y]: [i64; 2], text: &mut [u8]) -> usize {
+    if y == 0 {
+        text[0] = b'h';
+        1 + number::put(x, &mut text[1..])
+    } else if x == 0 {
+        text[0] = b'v';
+        1 + number::put(y, &mut text[1..])
+    } else {
+        put_pair(b'l', [x, y], text)
+    }
+}
+
+/// Room for a command with two numbers.
+const COMMAND: usize = 2 + 2 * number::LONGEST;
+
+fn write_line(&[a, b]: &[Point; 2], text: &mut Vec<u8>) {
+    let (a, b) = (units(a), units(b));
+    let mut line = [0; 2 * COMMAND];
+    let mut at = put_pair(b'M', a, &mut line);
+    at += put_step([b[0] - a[0], b[1] - a[1]], &mut line[at..]);
+    text.extend_from_slice(&line[..at]);
+}
+
+fn write_polyline(points: &[Point], text: &mut Vec<u8>) {
+    match points {
+        [first, open @ .., last] if open.len() > 1 && first == last => {
+            write_points(points[..points.len() - 1].iter().copied(), text);
+            text.push(b'z');
+        }
+        points => write_points(points.iter().copied(), text),
+    }
+}
+
+fn write_ring(points: impl Iterator<Item = Point>, text: &mut Vec<u8>) {
+    let before = text.len();
+    write_points(points, text);
+    if text.len() > before {
+        text.push(b'z');
+    }
+}
+
+/// Writes a move to the first point and steps to the others. Each step is taken from where the text has arrived, in
+/// whole units, so that rounding does not add up.
+fn write_points(mut points: impl Iterator<Item = Point>, text: &mut Vec<u8>) {
+    let Some(first) = points.next() else { return };
+    let mut command = [0; COMMAND];
+    let mut here = units(first);
+    let length = put_pair(b'M', here, &mut command);
+    text.extend_from_slice(&command[..length]);
+    let mut steps = 0;
+    for p in points {
+        let there = units(p);
+        let step = [there[0] - here[0], there[1] - here[1]];
+        if step == [0, 0] && steps > 0 {
+            continue;
+        }
+        steps += 1;
+        let length =
+            if steps % ANCHOR == 0 { put_pair(b'L', there, &mut command) } else { put_step(step, &mut command) };
+        text.extend_from_slice(&command[..length]);
+        here = there;
+    }
+}

@@ -1,0 +1,180 @@
+//! Cut: sites, links and angles in, tiles out.
+//!
+//! Every tile gets its outline, its number of layers and its standing towards the painted region. Tiles are worked out
+//! in parallel and do not depend on each other but for dithering, which passes its errors on in the order of sites.
+
+mod layers;
+mod stamp;
+mod standing;
+pub(crate) mod voronoi;
+
+use rayon::prelude::*;
+
+use crate::diag::{Code, Diagnostic};
+use crate::geom::Point;
+use crate::region::Region;
+use crate::scene::{Blend, Canvas, Edge, Paint, Shape};
+use crate::stage::{Angles, Graph, Layers, Sites, Standing, Tiles};
+use stamp::Stamp;
+use standing::Ground;
+
+/// Tiles that one thread works out at a time.
+const CHUNK: usize = 1024;
+
+/// Values of k that leave 0 to 4 by less are rounding, not a mistake.
+const ROUNDING: f64 = 1e-9;
+
+/// The tiles of some neighbouring sites.
+#[derive(Default)]
+struct Chunk {
+    corners: Vec<Point>,
+    lengths: Vec<usize>,
+    standing: Vec<Standing>,
+    inside: Vec<bool>,
+    /// The field's value at the site, as it is.
+    k: Vec<f64>,
+    /// The layers that occur somewhere in the tile; only where layers end along the field.
+    most: Vec<u8>,
+}
+
+/// Cuts the tiles of a paint. Sites, links and angles belong to the same paint. One warning is added where k
+/// had to be clamped on tiles that are drawn, and one where no tile lies on the region.
+pub fn cut(
+    paint: &Paint,
+    canvas: &Canvas,
+    sites: &Sites,
+    graph: &Graph,
+    angles: &Angles,
+    warnings: &mut Vec<Diagnostic>,
+) -> Tiles {
+    let visible = visible(paint, canvas);
+    let ground = Ground::new(&visible, paint);
+    let shaper = Shaper::new(paint, sites, graph, angles);
+    let chunks: Vec<Chunk> = (0..sites.points.len().div_ceil(CHUNK))
+        .into_par_iter()
+        .map(|chunk| {
+            let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(sites.points.len());
+            cut_chunk(paint, sites, &ground, &shaper, range)
+        })
+        .collect();
+    let field: Vec<f64> = chunks.iter().flat_map(|chunk| &chunk.k).copied().collect();
+    let standing: Vec<Standing> = chunks.iter().flat_map(|chunk| &chunk.standing).copied().collect();
+    let inside = chunks.iter().flat_map(|chunk| &chunk.inside).copied().collect();
+    let k: Vec<f64> = field.iter().map(|&k| clamp(k)).collect();
+    let layers: Vec<Layers> = match paint.tone.blend {
+        Blend::Step => k.iter().map(|&k| layers::step(k)).collect(),
+        Blend::Partial => k.iter().map(|&k| layers::partial(k)).collect(),
+        Blend::Dither => layers::dither(&k, graph),
+        Blend::Contour => {
+            chunks.iter().flat_map(|chunk| &chunk.most).map(|&full| Layers { full, part: 0.0 }).collect()
+        }
+    };
+    warnings.extend(clamped(paint, &field, &standing));
+    if standing.iter().all(|&standing| standing == Standing::Absent) {
+        let message = format!("`{}` has no tile on its region", paint.name);
+        warnings.push(Diagnostic::warning(Code::NoTiles, paint.span, message));
+    }
+    let rings = chunks.iter().flat_map(|chunk| {
+        let mut start = 0;
+        chunk.lengths.iter().map(move |&length| {
+            start += length;
+            &chunk.corners[start - length..start]
+        })
+    });
+    Tiles::new(rings, k, layers, standing, inside)
+}
+
+/// The part of a paint's region that lies on the canvas: what is off the canvas is neither drawn nor measured.
+pub(crate) fn visible(paint: &Paint, canvas: &Canvas) -> Region {
+    let (page, bounds) = (canvas.bounds(), paint.region.bounds());
+    let is_on_canvas = page.min.x <= bounds.min.x
+        && page.min.y <= bounds.min.y
+        && bounds.max.x <= page.max.x
+        && bounds.max.y <= page.max.y;
+    if is_on_canvas { paint.region.clone() } else { paint.region.intersection(&Region::rect(page)) }
+}
+
+fn cut_chunk(
+    paint: &Paint,
+    sites: &Sites,
+    ground: &Ground<'_>,
+    shaper: &Shaper<'_>,
+    range: std::ops::Range<usize>,
+) -> Chunk {
+    let mut chunk = Chunk::default();
+    let (mut ring, mut spare) = (Vec::new(), Vec::new());
+    for i in range {
+        let site = sites.points[i];
+        shaper.outline(i, &mut ring, &mut spare);
+        let inside = ground.contains(site);
+        chunk.inside.push(inside);
+        chunk.standing.push(match paint.tone.edge {
+            Edge::Clip => ground.clip(&ring),
+            Edge::Whole => ground.whole(&ring),
+            Edge::Centre if inside && !ring.is_empty() => Standing::Whole,
+            Edge::Centre => Standing::Absent,
+        });
+        chunk.k.push(paint.tone.k.at(site));
+        if paint.tone.blend == Blend::Contour {
+            chunk.most.push(layers::most(&paint.tone.k, site, &ring));
+        }
+        chunk.corners.extend_from_slice(&ring);
+        chunk.lengths.push(ring.len());
+    }
+    chunk
+}
+
+/// A value of k brought into 0..=4; what is no number counts as nothing.
+fn clamp(k: f64) -> f64 {
+    if k.is_nan() { 0.0 } else { k.clamp(0.0, layers::MOST) }
+}
+
+/// The warning that some values of k were clamped, if any were on tiles that are drawn.
+fn clamped(paint: &Paint, field: &[f64], standing: &[Standing]) -> Option<Diagnostic> {
+    let excess = |k: f64| if k.is_nan() { f64::INFINITY } else { (-k).max(k - layers::MOST) };
+    let drawn = || field.iter().zip(standing).filter(|(_, standing)| **standing != Standing::Absent).map(|(&k, _)| k);
+    let count = drawn().filter(|&k| excess(k) > ROUNDING).count();
+    // The first of those that go farthest.
+    let mut extreme = None;
+    for k in drawn() {
+        if excess(k) > extreme.map_or(ROUNDING, excess) {
+            extreme = Some(k);
+        }
+    }
+    let extreme = extreme?;
+    let tiles = if count == 1 { "1 tile".to_owned() } else { format!("{count} tiles") };
+    Some(
+        Diagnostic::warning(
+            Code::Clamped,
+            paint.tone.k_span,
+            format!("`k` leaves the range from 0 to 4 on {tiles} of `{}`", paint.name),
+        )
+        .label(format!("reaches {}", (extreme * 1e3).round() / 1e3))
+        .hint("the values were clamped; `clamp(…, 0, 4)` says so in the scene"),
+    )
+}
+
+/// Makes the outlines of one paint's tiles.
+enum Shaper<'a> {
+    Stamp { stamp: Stamp, sites: &'a Sites, angles: &'a Angles },
+    Cells(voronoi::Cells<'a>),
+}
+
+impl<'a> Shaper<'a> {
+    fn new(paint: &Paint, sites: &'a Sites, graph: &'a Graph, angles: &'a Angles) -> Self {
+        match &paint.tone.shape {
+            shape @ (Shape::Rect { .. } | Shape::Hexagon { .. }) => {
+                Self::Stamp { stamp: Stamp::new(shape, &paint.tone.place, sites.spacing), sites, angles }
+            }
+            &Shape::Voronoi { inset, round } => Self::Cells(voronoi::Cells::new(sites, graph, inset, round)),
+        }
+    }
+
+    /// Writes the outline of a tile.
+    fn outline(&self, tile: usize, ring: &mut Vec<Point>, spare: &mut Vec<Point>) {
+        match self {
+            Self::Stamp { stamp, sites, angles } => stamp.outline(sites.points[tile], angles.0[tile], ring),
+            Self::Cells(cells) => cells.outline(tile, ring, spare),
+        }
+    }
+}

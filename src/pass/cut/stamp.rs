@@ -1,0 +1,59 @@
+//! Stamps: outlines of one size that are set on every site, turned with the tile's angle or upright.
+
+use crate::geom::{Angle, Length, Point, Vec2};
+use crate::scene::{Placement, Shape};
+
+/// How far stamps without a size are enlarged where sites lie irregularly: at 1.4 squares on Poisson-disk sites leave
+/// 7 % of the paper open, at 1.6 under 2 %.
+const IRREGULAR_OVERLAP: f64 = 1.6;
+
+/// An outline round the origin at angle 0, clockwise on the page.
+pub(super) struct Stamp {
+    corners: Vec<Vec2>,
+    upright: bool,
+}
+
+impl Stamp {
+    /// The stamp of a shape; cells have none and give an empty one. `spacing` is the distance of neighbouring sites in
+    /// millimetres.
+    pub(super) fn new(shape: &Shape, place: &Placement, spacing: f64) -> Self {
+        let scale = |overlap: Option<f64>, is_sized: bool| match overlap {
+            Some(overlap) => overlap,
+            None if is_sized => 1.0,
+            None => default_overlap(place),
+        };
+        let or_spacing = |size: Option<Length>| size.map_or(spacing, Length::to_mm);
+        match *shape {
+            Shape::Rect { width, height, overlap, upright } => {
+                let scale = scale(overlap, width.or(height).is_some());
+                let w = or_spacing(width) * scale / 2.0;
+                let h = height.map_or(or_spacing(width), Length::to_mm) * scale / 2.0;
+                let corners = vec![Vec2::new(-w, -h), Vec2::new(w, -h), Vec2::new(w, h), Vec2::new(-w, h)];
+                Self { corners, upright }
+            }
+            Shape::Hexagon { size, overlap, upright } => {
+                let radius = or_spacing(size) * scale(overlap, size.is_some()) / 3f64.sqrt();
+                // The first corner lies a twelfth of a turn from +x, so that a flat faces it.
+                let corners = (0..6).map(|i| Angle::degrees(30.0 + 60.0 * f64::from(i)).unit() * radius).collect();
+                Self { corners, upright }
+            }
+            Shape::Voronoi { .. } => Self { corners: Vec::new(), upright: true },
+        }
+    }
+
+    /// Writes the outline on a site.
+    pub(super) fn outline(&self, site: Point, angle: Angle, ring: &mut Vec<Point>) {
+        let along = if self.upright { Vec2::new(1.0, 0.0) } else { angle.unit() };
+        let across = along.turned();
+        ring.clear();
+        ring.extend(self.corners.iter().map(|corner| site + along * corner.x + across * corner.y));
+    }
+}
+
+/// The overlap of stamps that have none of their own.
+fn default_overlap(place: &Placement) -> f64 {
+    match place {
+        Placement::Poisson { .. } | Placement::Uniform { .. } | Placement::Points(_) => IRREGULAR_OVERLAP,
+        Placement::Grid(_) | Placement::Hex { .. } => 1.0,
+    }
+}

@@ -1,0 +1,127 @@
+//! From drawn paints and outlines to the whole drawing, from the bottom up.
+
+use crate::diag::Diagnostic;
+use crate::drawing::{Drawing, Layer, Page, Strokes};
+use crate::pass::cut;
+use crate::scene::{Canvas, Cap, Colour, Draw, Limits, Outline, Over, Paint, Scene};
+use crate::span::Span;
+
+use super::budget::Exceeded;
+use super::knockout::Stencil;
+use super::{Stages, draw};
+
+/// Something that is drawn.
+#[derive(Debug, Clone, Copy)]
+pub enum Item<'a> {
+    /// A region filled with a tone.
+    Paint(&'a Paint),
+    /// A region's outline.
+    Outline(&'a Outline),
+}
+
+/// Where in the scene something is drawn.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Setting {
+    /// The names of the layers around it, outermost first.
+    pub groups: Vec<String>,
+    /// The ink of the innermost layer that has one, else the canvas's.
+    pub ink: Colour,
+}
+
+/// All that a scene draws, from the bottom up.
+#[must_use]
+pub fn items(scene: &Scene) -> Vec<(Setting, Item<'_>)> {
+    let mut items = Vec::new();
+    collect(&scene.draws, &Setting { groups: Vec::new(), ink: scene.canvas.ink }, &mut items);
+    items
+}
+
+/// Layers are nested no deeper than the limit of nesting.
+fn collect<'a>(draws: &'a [Draw], setting: &Setting, items: &mut Vec<(Setting, Item<'a>)>) {
+    for draw in draws {
+        match draw {
+            Draw::Paint(paint) => items.push((setting.clone(), Item::Paint(paint))),
+            Draw::Outline(outline) => items.push((setting.clone(), Item::Outline(outline))),
+            Draw::Layer(group) => {
+                let mut inner = setting.clone();
+                inner.groups.push(group.name.clone());
+                inner.ink = group.ink.unwrap_or(setting.ink);
+                collect(&group.draws, &inner, items);
+            }
+        }
+    }
+}
+
+/// A drawing that is being put together.
+pub struct Assembly<'a> {
+    canvas: &'a Canvas,
+    limits: &'a Limits,
+    layers: Vec<Layer>,
+}
+
+impl<'a> Assembly<'a> {
+    /// An empty sheet.
+    #[must_use]
+    pub fn new(canvas: &'a Canvas, limits: &'a Limits) -> Self {
+        Self { canvas, limits, layers: Vec::new() }
+    }
+
+    /// Draws a paint on top of what is there, and first removes what lies under its tiles if it knocks out.
+    ///
+    /// # Errors
+    /// If the drawing comes to have more marks than the limit allows.
+    pub fn paint(&mut self, paint: &Paint, setting: &Setting, stages: &Stages<'_>) -> Result<(), Diagnostic> {
+        let layers = draw(paint, self.canvas, setting, stages, self.limits)?;
+        match paint.tone.over {
+            Over::Print => {}
+            Over::Knockout => {
+                let visible = cut::visible(paint, self.canvas);
+                let stencil = Stencil::new(paint, &visible, stages.sites, stages.tiles);
+                self.layers.iter_mut().for_each(|layer| stencil.cut(layer));
+                self.layers.retain(|layer| layer.marks() > 0);
+            }
+        }
+        self.add(layers, paint.span)
+    }
+
+    /// Draws an outline on top of what is there: every ring as one closed stroke.
+    ///
+    /// # Errors
+    /// If the drawing comes to have more marks than the limit allows.
+    pub fn outline(&mut self, outline: &Outline, setting: &Setting) -> Result<(), Diagnostic> {
+        let rings = outline.region.polygons().iter().flat_map(|polygon| polygon.rings());
+        let polylines = rings.map(|ring| ring.iter().chain(ring.first()).copied().collect()).collect();
+        let layer = Layer {
+            groups: setting.groups.clone(),
+            name: "outline".to_owned(),
+            ink: setting.ink,
+            areas: Vec::new(),
+            strokes: vec![Strokes { polylines, ..Strokes::new(outline.pen, Cap::Butt) }],
+            dots: Vec::new(),
+        };
+        self.add(vec![layer], outline.span)
+    }
+
+    fn add(&mut self, layers: Vec<Layer>, span: Span) -> Result<(), Diagnostic> {
+        self.layers.extend(layers);
+        if self.layers.iter().map(Layer::marks).sum::<u64>() > self.limits.strokes {
+            return Err(Exceeded.diagnostic(self.limits, span));
+        }
+        Ok(())
+    }
+
+    /// The drawing.
+    #[must_use]
+    pub fn finish(self) -> Drawing {
+        let canvas = self.canvas;
+        let page = Page {
+            width: canvas.width,
+            height: canvas.height,
+            pixels: canvas.pixels,
+            dpi: canvas.dpi,
+            paper: canvas.paper,
+            depth: canvas.depth,
+        };
+        Drawing { page, layers: self.layers }
+    }
+}

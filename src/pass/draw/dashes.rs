@@ -1,0 +1,71 @@
+//! Broken strokes: where dashes lie along a line.
+
+use crate::geom::Length;
+
+/// A pattern of dashes. Seen from the site they are set like bricks: on even lines the middle of a dash, on odd lines the
+/// middle of a gap lies beside it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Dashes {
+    dash: f64,
+    period: f64,
+}
+
+impl Dashes {
+    pub(super) fn new(dash: Length, gap: Length) -> Self {
+        Self { dash: dash.to_mm(), period: (dash + gap).to_mm() }
+    }
+
+    /// The length of a dash in millimetres.
+    pub(super) fn length(&self) -> f64 {
+        self.dash
+    }
+
+    /// About how many dashes a range has.
+    pub(super) fn count(&self, (start, end): (f64, f64)) -> f64 {
+        (end - start) / self.period + 1.0
+    }
+
+    /// Appends the dashes of line `number` that reach into a range, in order.
+    pub(super) fn cut(&self, (start, end): (f64, f64), number: i64, out: &mut Vec<(f64, f64)>) {
+        let middle = if number.rem_euclid(2) == 0 { 0.0 } else { self.period / 2.0 };
+        let mut i = ((start - middle - self.dash / 2.0) / self.period).ceil();
+        loop {
+            let dash = middle + i * self.period - self.dash / 2.0;
+            if dash >= end {
+                break;
+            }
+            // A dash that reaches into two ranges is listed once.
+            if out.last().is_none_or(|last| last.0 < dash) {
+                out.push((dash, dash + self.dash));
+            }
+            i += 1.0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dashes_are_set_like_bricks() {
+        let dashes = Dashes::new(Length::mm(2.0), Length::mm(1.0));
+        let cut = |number| {
+            let mut out = Vec::new();
+            dashes.cut((-1.5, 3.0), number, &mut out);
+            out
+        };
+        assert_eq!(cut(0), [(-1.0, 1.0), (2.0, 4.0)]);
+        assert_eq!(cut(-1), [(-2.5, -0.5), (0.5, 2.5)]);
+        assert_eq!(cut(3), cut(-1));
+    }
+
+    #[test]
+    fn a_dash_over_two_ranges_is_one() {
+        let dashes = Dashes::new(Length::mm(2.0), Length::mm(1.0));
+        let mut out = Vec::new();
+        dashes.cut((-0.5, 0.0), 0, &mut out);
+        dashes.cut((0.5, 0.7), 0, &mut out);
+        assert_eq!(out, [(-1.0, 1.0)]);
+    }
+}

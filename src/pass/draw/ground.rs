@@ -1,0 +1,206 @@
+//! What is drawn where no tile is, before the tiles.
+//!
+//! A fill of its own runs over the whole region, its lines at the exact pitch and measured from the middle of the page, and
+//! is left out under the tiles. `nearest` continues the pattern of every tile over its Voronoi cell. Both end at the
+//! region's outline whatever the tiles do there.
+
+use rayon::prelude::*;
+
+use crate::geom::clip::{Frame, Profile, convex_clearance};
+use crate::geom::{Angle, Length, Point, ring_bounds};
+use crate::pass::cut::voronoi::Cells;
+use crate::region::{FillRule, Region};
+use crate::scene::{Canvas, Fill, FillKind, Ground, Hatch};
+
+use super::budget::Exceeded;
+use super::dashes::Dashes;
+use super::dots::Dotting;
+use super::edge::Contact;
+use super::job::{Job, Piece, Scratch};
+use super::lattice::Lattice;
+use super::lines::Line;
+use super::palette::Batch;
+use super::solid;
+
+/// Lines that one thread draws at a time; they also make a bundle.
+const BAND: usize = 64;
+
+/// Draws the ground of a paint, if it has one.
+pub(super) fn draw(job: &Job<'_>, canvas: &Canvas) -> Result<Vec<Vec<Batch>>, Exceeded> {
+    match &job.paint.tone.ground {
+        None => Ok(Vec::new()),
+        Some(Ground::Nearest) => nearest(job),
+        Some(Ground::Fill { fill, angle }) => even(job, canvas, fill, *angle),
+    }
+}
+
+/// Hatches the gaps as the nearest tile is hatched. Tiles that are left out at the region's edge have gaps too.
+fn nearest(job: &Job<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
+    let cells = Cells::new(job.sites, job.graph, Length::ZERO, Length::ZERO);
+    let pens = job.paint.tone.fill.iter().filter_map(|fill| fill.kind.hatch());
+    let margin = pens.map(|hatch| hatch.pen.to_mm() / 2.0).fold(0.0, f64::max);
+    job.in_chunks(|scratch, tile, out| {
+        let outline = job.tiles.outline(tile);
+        if job.tiles.layers[tile].is_blank() || outline.is_empty() {
+            return Ok(());
+        }
+        let (mut cell, mut spare) = (Vec::new(), Vec::new());
+        cells.outline(tile, &mut cell, &mut spare);
+        let is_gapless = job.tiles.is_drawn(tile) && cell.iter().all(|&p| convex_clearance(outline, p) >= 0.0);
+        let contact = job.bank.standing(ring_bounds(&cell).grown(margin));
+        if is_gapless || contact == Contact::Outside {
+            return Ok(());
+        }
+        let site = job.sites.points[tile];
+        let reach = cell.iter().map(|&p| p.distance_squared(site)).fold(0.0, f64::max).sqrt();
+        scratch.covers.clear();
+        job.nearby.near(site, reach, |other| scratch.covers.push(other));
+        job.draw_layers(&Piece { tile, beyond: Some(&cell), is_clipped: contact == Contact::Crossing }, scratch, out)
+    })
+}
+
+/// Draws one fill over all that is left of the region.
+fn even(job: &Job<'_>, canvas: &Canvas, fill: &Fill, angle: Angle) -> Result<Vec<Vec<Batch>>, Exceeded> {
+    let frame = Frame::new(canvas.bounds().centre(), angle.unit());
+    let mut region = Profile::default();
+    region.set(&job.bank.region().bounds().corners(), &frame);
+    let plane = Plane { job, frame, region };
+    match &fill.kind {
+        FillKind::Lines(hatch) => plane.lines(hatch, None),
+        FillKind::Dashes { hatch, dash, gap } => plane.lines(hatch, Some(&Dashes::new(*dash, *gap))),
+        FillKind::Dots { hatch, spacing, radius } => plane.dots(&Dotting::new(hatch, *spacing, *radius)),
+        FillKind::Solid => {
+            let drawn = (0..job.tiles.len()).filter(|&tile| job.tiles.is_drawn(tile));
+            let outlines = drawn.map(|tile| job.tiles.outline(tile).to_vec()).collect();
+            let mut batches = job.palette.batches();
+            let batch = &mut batches[job.palette.ground_slot()];
+            solid::push(&job.bank.region().difference(&Region::from_rings(outlines, FillRule::NonZero)), batch);
+            job.budget.mark(batch.len())?;
+            Ok(vec![batches])
+        }
+    }
+}
+
+/// A region to be filled along one direction.
+struct Plane<'a> {
+    job: &'a Job<'a>,
+    frame: Frame,
+    /// The box around it.
+    region: Profile,
+}
+
+impl Plane<'_> {
+    /// Runs over the lines in bands, in parallel. The batches come back in the order of the lines.
+    fn in_bands(
+        &self,
+        pitch: Length,
+        draw: impl Fn(&mut Scratch, &[(i64, f64)], &mut Batch) -> Result<(), Exceeded> + Sync,
+    ) -> Result<Vec<Vec<Batch>>, Exceeded> {
+        let lattice = Lattice::cell(self.region.across(), 0.0, pitch.to_mm());
+        self.job.budget.work(lattice.count())?;
+        if lattice.count() > self.job.budget.limit() as f64 {
+            return Err(Exceeded);
+        }
+        let lines: Vec<(i64, f64)> = lattice.places().collect();
+        lines
+            .par_chunks(BAND)
+            .map(|band| {
+                let mut batches = self.job.palette.batches();
+                let batch = &mut batches[self.job.palette.ground_slot()];
+                draw(&mut Scratch::default(), band, batch)?;
+                batch.end_bundle();
+                self.job.budget.mark(batch.len())?;
+                Ok(batches)
+            })
+            .collect()
+    }
+
+    fn lines(&self, hatch: &Hatch, dashes: Option<&Dashes>) -> Result<Vec<Vec<Batch>>, Exceeded> {
+        let ranges = self.tile_ranges();
+        let along = self.region.along();
+        self.in_bands(hatch.pitch, |scratch, band, out| {
+            let hidden = self.hidden(band, &ranges, scratch);
+            for (&(number, v), hidden) in band.iter().zip(hidden) {
+                scratch.ranges.reset(along.0, along.1);
+                for (start, end) in hidden {
+                    scratch.ranges.subtract(start, end);
+                }
+                self.job.bank.clip(&self.frame, v, hatch, &mut scratch.ranges, &mut scratch.edge);
+                let line = Line { frame: &self.frame, number, v, is_backwards: number.rem_euclid(2) == 1 };
+                line.emit(self.job, hatch, dashes, scratch, out)?;
+            }
+            Ok(())
+        })
+    }
+
+    fn dots(&self, dotting: &Dotting<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
+        let row = dotting.along(self.region.along());
+        self.in_bands(dotting.hatch.pitch, |_, band, out| {
+            for &(number, v) in band {
+                self.job.budget.work(row.count())?;
+                let start = out.dots.len();
+                for (_, u) in row.places() {
+                    let centre = self.frame.page(u, v);
+                    if self.is_free(centre, dotting.radius) {
+                        out.dots.push(centre);
+                    }
+                }
+                if number.rem_euclid(2) == 1 {
+                    out.dots[start..].reverse();
+                }
+                if out.dots.len() > self.job.budget.limit() {
+                    return Err(Exceeded);
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// Whether a dot lies in the region and clear of all tiles.
+    fn is_free(&self, centre: Point, radius: f64) -> bool {
+        if !self.job.bank.holds_disc(centre, radius) {
+            return false;
+        }
+        let mut is_free = true;
+        self.job.nearby.near(centre, radius, |tile| {
+            is_free = is_free && convex_clearance(self.job.nearby.outline(tile), centre) <= -radius;
+        });
+        is_free
+    }
+
+    /// The drawn tiles with their ranges across the lines.
+    fn tile_ranges(&self) -> Vec<(u32, (f64, f64))> {
+        let tiles = self.job.tiles;
+        (0..tiles.len())
+            .into_par_iter()
+            .filter(|&tile| tiles.is_drawn(tile))
+            .map(|tile| {
+                let across = tiles.outline(tile).iter().map(|&corner| self.frame.local(corner).y);
+                let range = across.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+                (tile as u32, range)
+            })
+            .collect()
+    }
+
+    /// What tiles hide of each line of a band.
+    fn hidden(
+        &self,
+        band: &[(i64, f64)],
+        tiles: &[(u32, (f64, f64))],
+        scratch: &mut Scratch,
+    ) -> Vec<Vec<(f64, f64)>> {
+        let mut hidden = vec![Vec::new(); band.len()];
+        let (Some(first), Some(last)) = (band.first(), band.last()) else { return hidden };
+        for &(tile, (low, high)) in tiles {
+            if high < first.1 || low > last.1 {
+                continue;
+            }
+            scratch.area.set(self.job.nearby.outline(tile), &self.frame);
+            let start = band.partition_point(|line| line.1 < low);
+            for (line, hidden) in band.iter().zip(&mut hidden).skip(start).take_while(|(line, _)| line.1 <= high) {
+                hidden.extend(scratch.area.span(line.1));
+            }
+        }
+        hidden
+    }
+}

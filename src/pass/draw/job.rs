@@ -1,0 +1,174 @@
+//! One paint as the fills see it: its tiles, what hides what, where strokes end, and what may be spent.
+
+use rayon::prelude::*;
+
+use crate::geom::clip::{Frame, Profile, Ranges};
+use crate::geom::{Angle, Point, Vec2};
+use crate::scene::{FillKind, Paint, Stack};
+use crate::stage::{Angles, Graph, Sites, Standing, Tiles};
+
+use super::budget::{Budget, Exceeded};
+use super::edge::{self, Bank};
+use super::nearby::Nearby;
+use super::palette::{Batch, Palette};
+use super::{dashes, dots, lines, solid};
+
+/// Tiles that one thread draws at a time.
+const CHUNK: usize = 256;
+
+/// A paint that is being drawn.
+pub(super) struct Job<'a> {
+    pub(super) paint: &'a Paint,
+    pub(super) sites: &'a Sites,
+    pub(super) graph: &'a Graph,
+    pub(super) angles: &'a Angles,
+    pub(super) tiles: &'a Tiles,
+    pub(super) bank: &'a Bank<'a>,
+    pub(super) nearby: &'a Nearby<'a>,
+    pub(super) palette: &'a Palette,
+    pub(super) budget: &'a Budget,
+}
+
+/// Memory that is used again for every tile.
+#[derive(Default)]
+pub(super) struct Scratch {
+    /// The tiles that hide parts of this one.
+    pub(super) covers: Vec<u32>,
+    /// The outline that lines are measured on.
+    pub(super) whole: Profile,
+    /// The outline they are drawn in.
+    pub(super) area: Profile,
+    /// Profiles of the covers; the list may be longer than they are many.
+    pub(super) shadows: Vec<Profile>,
+    /// What is left of a line.
+    pub(super) ranges: Ranges,
+    /// Other ranges along it.
+    pub(super) others: Vec<(f64, f64)>,
+    pub(super) edge: edge::Scratch,
+}
+
+/// One layer of one tile.
+pub(super) struct Layer<'a> {
+    /// 1 to 4.
+    pub(super) number: u8,
+    /// The share of its lines that is drawn; 1 is all.
+    pub(super) share: f64,
+    /// The site, and the direction of this layer's strokes.
+    pub(super) frame: Frame,
+    /// The tile's outline, over which lines are spread.
+    pub(super) outline: &'a [Point],
+    /// What is drawn in: the outline, or where the tile's pattern is continued, an area beyond it.
+    pub(super) area: &'a [Point],
+    /// Whether the pattern is continued.
+    pub(super) is_continued: bool,
+    /// Whether the region's outline comes near.
+    pub(super) is_clipped: bool,
+}
+
+/// A tile, or an area that is hatched as one.
+pub(super) struct Piece<'a> {
+    pub(super) tile: usize,
+    /// Where the tile's pattern is continued, if not in the tile itself.
+    pub(super) beyond: Option<&'a [Point]>,
+    /// Whether the region's outline comes near.
+    pub(super) is_clipped: bool,
+}
+
+impl Job<'_> {
+    /// Runs over numbers of tiles in parallel. The batches come back in the order of the tiles.
+    pub(super) fn in_chunks(
+        &self,
+        draw: impl Fn(&mut Scratch, usize, &mut [Batch]) -> Result<(), Exceeded> + Sync,
+    ) -> Result<Vec<Vec<Batch>>, Exceeded> {
+        (0..self.tiles.len().div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|chunk| {
+                let (mut scratch, mut batches) = (Scratch::default(), self.palette.batches());
+                for tile in chunk * CHUNK..((chunk + 1) * CHUNK).min(self.tiles.len()) {
+                    let before: usize = batches.iter().map(Batch::len).sum();
+                    draw(&mut scratch, tile, &mut batches)?;
+                    batches.iter_mut().for_each(Batch::end_bundle);
+                    self.budget.mark(batches.iter().map(Batch::len).sum::<usize>() - before)?;
+                }
+                Ok(batches)
+            })
+            .collect()
+    }
+
+    /// Draws a tile's own marks.
+    pub(super) fn draw_tile(&self, scratch: &mut Scratch, tile: usize, out: &mut [Batch]) -> Result<(), Exceeded> {
+        if !self.tiles.is_drawn(tile) {
+            return Ok(());
+        }
+        scratch.covers.clear();
+        // Cells lie side by side and hide nothing of each other.
+        if self.paint.tone.stack == Stack::Cover && !self.paint.tone.shape.is_cell() {
+            let radius = self.nearby.radius(tile);
+            self.nearby.near(self.sites.points[tile], radius, |other| {
+                if other as usize > tile {
+                    scratch.covers.push(other);
+                }
+            });
+        }
+        let is_clipped = self.tiles.standing[tile] == Standing::Clipped;
+        self.draw_layers(&Piece { tile, beyond: None, is_clipped }, scratch, out)
+    }
+
+    /// Draws all layers of a tile, or of an area as that tile has them, minus the covers in `scratch`.
+    pub(super) fn draw_layers(
+        &self,
+        piece: &Piece<'_>,
+        scratch: &mut Scratch,
+        out: &mut [Batch],
+    ) -> Result<(), Exceeded> {
+        let layers = self.tiles.layers[piece.tile];
+        let outline = self.tiles.outline(piece.tile);
+        let fills = &self.paint.tone.fill;
+        let mut solid_slots = [None; 4];
+        for number in 1..=(layers.full + u8::from(layers.part > 0.0)).min(4) {
+            let at = usize::from(number - 1).min(fills.len() - 1);
+            let slot = self.palette.slot(at);
+            let layer = Layer {
+                number,
+                share: if number <= layers.full { 1.0 } else { layers.part },
+                frame: Frame::new(self.sites.points[piece.tile], direction(self.angles.0[piece.tile], number)),
+                outline,
+                area: piece.beyond.unwrap_or(outline),
+                is_continued: piece.beyond.is_some(),
+                is_clipped: piece.is_clipped,
+            };
+            let batch = &mut out[slot];
+            match &fills[at].kind {
+                FillKind::Lines(hatch) => lines::draw(self, &layer, hatch, None, scratch, batch)?,
+                FillKind::Dashes { hatch, dash, gap } => {
+                    let dashes = dashes::Dashes::new(*dash, *gap);
+                    lines::draw(self, &layer, hatch, Some(&dashes), scratch, batch)?;
+                }
+                FillKind::Dots { hatch, spacing, radius } => {
+                    dots::draw(self, &layer, &dots::Dotting::new(hatch, *spacing, *radius), scratch, batch)?;
+                }
+                FillKind::Solid => {
+                    // A second coat of the same ink is not seen.
+                    if !solid_slots.contains(&Some(slot)) {
+                        solid_slots[usize::from(number - 1)] = Some(slot);
+                        solid::draw(self, &layer, &scratch.covers, batch);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The direction of a layer's strokes: layers are turned by 0, 90, 45 and 135 degrees against the tile.
+fn direction(angle: Angle, layer: u8) -> Vec2 {
+    let along = angle.unit();
+    let across = along.turned();
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    match layer {
+        0 | 1 => along,
+        2 => across,
+        3 => (along + across) * half,
+        _ => (across - along) * half,
+    }
+}

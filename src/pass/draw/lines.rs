@@ -1,0 +1,176 @@
+//! Hatching with parallel strokes.
+//!
+//! Strokes are cut by their centre lines to the tile and to what later tiles hide, so that butt ends meet the edges of
+//! tiles, and in their whole width to the region. Whatever is then too short is dropped.
+
+use crate::field::Node;
+use crate::geom::Length;
+use crate::geom::clip::{Frame, Profile, TOLERANCE};
+use crate::scene::{Blend, Hatch};
+
+use super::budget::Exceeded;
+use super::dashes::Dashes;
+use super::job::{Job, Layer, Scratch};
+use super::lattice::{Lattice, is_drawn};
+use super::palette::Batch;
+
+/// Halvings in the search for the place where a layer ends along the field: from a tenth of a millimetre to a millionth.
+const HALVINGS: usize = 24;
+
+/// Draws the lines of a layer, or dashes along them.
+pub(super) fn draw(
+    job: &Job<'_>,
+    layer: &Layer<'_>,
+    hatch: &Hatch,
+    dashes: Option<&Dashes>,
+    scratch: &mut Scratch,
+    out: &mut Batch,
+) -> Result<(), Exceeded> {
+    let lattice = spread(job, layer, hatch, scratch);
+    job.budget.work(lattice.count())?;
+    set_shadows(job, layer, scratch);
+    let mut is_backwards = false;
+    for (i, v) in lattice.places() {
+        if !is_drawn(i, layer.share) {
+            continue;
+        }
+        let Some((start, end)) = scratch.area.span(v) else { continue };
+        scratch.ranges.reset(start, end);
+        for shadow in &scratch.shadows[..scratch.covers.len()] {
+            if let Some((start, end)) = shadow.span(v) {
+                scratch.ranges.subtract(start, end);
+            }
+        }
+        contour(job, layer, v, hatch.pitch, scratch)?;
+        if layer.is_clipped {
+            job.bank.clip(&layer.frame, v, hatch, &mut scratch.ranges, &mut scratch.edge);
+        }
+        if scratch.ranges.is_empty() {
+            continue;
+        }
+        let line = Line { frame: &layer.frame, number: i, v, is_backwards };
+        line.emit(job, hatch, dashes, scratch, out)?;
+        is_backwards = !is_backwards;
+    }
+    Ok(())
+}
+
+/// Takes the profiles of the layer and spreads lines over it.
+pub(super) fn spread(job: &Job<'_>, layer: &Layer<'_>, hatch: &Hatch, scratch: &mut Scratch) -> Lattice {
+    scratch.whole.set(layer.outline, &layer.frame);
+    scratch.area.set(layer.area, &layer.frame);
+    let pitch = hatch.pitch.to_mm();
+    let (low, high) = scratch.whole.across();
+    let lattice = if job.paint.tone.shape.is_cell() {
+        Lattice::cell((low, high), 0.0, pitch)
+    } else {
+        Lattice::stamp((low, high), pitch, hatch.inset, layer.number)
+    };
+    if layer.is_continued { lattice.over(scratch.area.across()) } else { lattice }
+}
+
+/// Takes the profiles of the tiles that hide parts of this one.
+fn set_shadows(job: &Job<'_>, layer: &Layer<'_>, scratch: &mut Scratch) {
+    let count = scratch.covers.len();
+    if scratch.shadows.len() < count {
+        scratch.shadows.resize_with(count, Profile::default);
+    }
+    for (shadow, &cover) in scratch.shadows.iter_mut().zip(&scratch.covers) {
+        shadow.set(job.nearby.outline(cover), &layer.frame);
+    }
+}
+
+/// Keeps the parts of a line where the field has this layer, if layers end along the field.
+fn contour(job: &Job<'_>, layer: &Layer<'_>, v: f64, pitch: Length, scratch: &mut Scratch) -> Result<(), Exceeded> {
+    let field = &job.paint.tone.k;
+    if job.paint.tone.blend != Blend::Contour || matches!(field.node(), Node::Constant(_)) {
+        return Ok(());
+    }
+    let threshold = f64::from(layer.number) - 0.5;
+    let is_in = |u: f64| field.at(layer.frame.page(u, v)) >= threshold;
+    scratch.others.clear();
+    for &(start, end) in scratch.ranges.as_slice() {
+        let steps = ((end - start) / (pitch.to_mm() / 2.0)).ceil().max(1.0);
+        job.budget.work(steps)?;
+        let at = |step: f64| if step < steps { start + (end - start) * (step / steps) } else { end };
+        let mut was_in = is_in(start);
+        let mut from = start;
+        let mut step = 1.0;
+        while step <= steps {
+            let u = at(step);
+            let now_in = is_in(u);
+            if now_in != was_in {
+                let crossing = cross(at(step - 1.0), u, |u| is_in(u) == was_in);
+                if was_in {
+                    scratch.others.push((from, crossing));
+                }
+                (from, was_in) = (crossing, now_in);
+            }
+            step += 1.0;
+        }
+        if was_in {
+            scratch.others.push((from, end));
+        }
+    }
+    scratch.ranges.intersect(&scratch.others);
+    Ok(())
+}
+
+/// Where between `low` and `high` something ceases to hold.
+fn cross(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = (low + high) / 2.0;
+        if holds(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    (low + high) / 2.0
+}
+
+/// A line of which some ranges are to be drawn.
+pub(super) struct Line<'a> {
+    pub(super) frame: &'a Frame,
+    /// Its number in the lattice.
+    pub(super) number: i64,
+    /// Its place across the frame.
+    pub(super) v: f64,
+    /// Whether the pen comes from the far end: it turns round at the end of every line.
+    pub(super) is_backwards: bool,
+}
+
+impl Line<'_> {
+    /// Draws what is left in `scratch.ranges` and long enough.
+    pub(super) fn emit(
+        &self,
+        job: &Job<'_>,
+        hatch: &Hatch,
+        dashes: Option<&Dashes>,
+        scratch: &mut Scratch,
+        out: &mut Batch,
+    ) -> Result<(), Exceeded> {
+        let mut shortest = hatch.shortest.to_mm();
+        if let Some(dashes) = dashes {
+            scratch.others.clear();
+            for &range in scratch.ranges.as_slice() {
+                job.budget.work(dashes.count(range))?;
+                dashes.cut(range, self.number, &mut scratch.others);
+            }
+            scratch.ranges.intersect(&scratch.others);
+            // Dashes that are meant to be short are not too short.
+            shortest = shortest.min(dashes.length());
+        }
+        let start = out.lines.len();
+        for &(from, to) in scratch.ranges.as_slice() {
+            if to - from >= shortest - TOLERANCE {
+                out.lines.push([self.frame.page(from, self.v), self.frame.page(to, self.v)]);
+            }
+        }
+        if self.is_backwards {
+            out.lines[start..].reverse();
+            out.lines[start..].iter_mut().for_each(|line| line.reverse());
+        }
+        if out.lines.len() > job.budget.limit() { Err(Exceeded) } else { Ok(()) }
+    }
+}

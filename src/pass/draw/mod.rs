@@ -1,0 +1,87 @@
+//! Draw: tiles in, marks out, cut to what is seen of them.
+//!
+//! A paint becomes one layer of the drawing for each ink it uses. Every stroke ends where its tile, a later tile that
+//! hides it or the region ends; nothing is left to the back ends. Tiles are drawn in parallel and put together in the
+//! order of their sites, so that the drawing does not depend on threads. [`Assembly`] lays paints and outlines over each
+//! other.
+
+mod assemble;
+mod budget;
+mod dashes;
+mod dots;
+mod edge;
+mod ground;
+mod job;
+mod knockout;
+mod lattice;
+mod lines;
+mod nearby;
+mod palette;
+mod solid;
+
+#[cfg(test)]
+mod tests;
+
+pub use assemble::{Assembly, Item, Setting, items};
+
+use crate::diag::Diagnostic;
+use crate::drawing::Layer;
+use crate::pass::cut::visible;
+use crate::scene::{Canvas, Limits, Paint};
+use crate::stage::{Angles, Graph, Sites, Tiles};
+
+use budget::{Budget, Exceeded};
+use edge::Bank;
+use job::Job;
+use nearby::Nearby;
+use palette::{Batch, Palette};
+
+/// What the earlier passes found for one paint.
+#[derive(Debug, Clone, Copy)]
+pub struct Stages<'a> {
+    /// Where its tiles lie.
+    pub sites: &'a Sites,
+    /// Which are neighbours.
+    pub graph: &'a Graph,
+    /// How they are turned.
+    pub angles: &'a Angles,
+    /// The tiles themselves.
+    pub tiles: &'a Tiles,
+}
+
+/// Draws a paint: one layer for each ink, from the bottom up; none where nothing is seen.
+///
+/// # Errors
+/// If it has more marks than the limit allows.
+pub fn draw(
+    paint: &Paint,
+    canvas: &Canvas,
+    setting: &Setting,
+    stages: &Stages<'_>,
+    limits: &Limits,
+) -> Result<Vec<Layer>, Diagnostic> {
+    let visible = visible(paint, canvas);
+    let &Stages { sites, graph, angles, tiles } = stages;
+    let (bank, nearby) = (Bank::new(&visible), Nearby::new(sites, tiles));
+    let (palette, budget) = (Palette::new(paint, setting.ink), Budget::new(limits));
+    let job = Job {
+        paint,
+        sites,
+        graph,
+        angles,
+        tiles,
+        bank: &bank,
+        nearby: &nearby,
+        palette: &palette,
+        budget: &budget,
+    };
+    let chunks = chunks(&job, canvas).map_err(|exceeded| exceeded.diagnostic(limits, paint.span))?;
+    Ok(palette.layers(&paint.name, &setting.groups, chunks))
+}
+
+/// The ground and then the tiles.
+fn chunks(job: &Job<'_>, canvas: &Canvas) -> Result<Vec<Vec<Batch>>, Exceeded> {
+    let mut chunks = ground::draw(job, canvas)?;
+    chunks.extend(job.in_chunks(|scratch, tile, out| job.draw_tile(scratch, tile, out))?);
+    Ok(chunks)
+}

@@ -1,0 +1,176 @@
+//! Which drawn tiles, or which corners of an outline, lie near a place.
+//!
+//! Points are sorted into the cells of a square grid that has about as many cells as there are points, in two flat lists,
+//! so that a million tiles cost a few bytes each.
+
+use crate::geom::{Point, Rect};
+use crate::stage::{Sites, Tiles};
+
+/// Most cells along one side of a grid, so that points strung along a line cannot ask for many empty ones.
+const MOST_CELLS: f64 = 4096.0;
+
+/// Points in cells.
+pub(super) struct Buckets {
+    bounds: Rect,
+    /// The side of a cell in millimetres.
+    cell: f64,
+    columns: usize,
+    rows: usize,
+    /// Where the points of a cell start in `listed`; one more than there are cells.
+    starts: Vec<u32>,
+    listed: Vec<u32>,
+}
+
+impl Buckets {
+    /// Sorts points, of which `index` names some, into cells of at least `cell` millimetres.
+    fn new(points: &[Point], index: impl Iterator<Item = usize> + Clone, cell: f64) -> Self {
+        let bounds = index.clone().fold(Rect::EMPTY, |bounds, i| bounds.including(points[i]));
+        let count = index.clone().count();
+        if count == 0 {
+            return Self { bounds, cell: 1.0, columns: 0, rows: 0, starts: vec![0], listed: Vec::new() };
+        }
+        let (width, height) = (bounds.width(), bounds.height());
+        let even = (width * height / count as f64).sqrt();
+        let cell = cell.max(even).max(width / MOST_CELLS).max(height / MOST_CELLS).max(f64::MIN_POSITIVE);
+        let (columns, rows) = ((width / cell) as usize + 1, (height / cell) as usize + 1);
+        let mut buckets = Self { bounds, cell, columns, rows, starts: vec![0; columns * rows + 1], listed: vec![0; count] };
+        for i in index.clone() {
+            let at = buckets.cell_of(points[i]);
+            buckets.starts[at + 1] += 1;
+        }
+        for i in 1..buckets.starts.len() {
+            buckets.starts[i] += buckets.starts[i - 1];
+        }
+        let mut next = buckets.starts.clone();
+        for i in index {
+            let at = buckets.cell_of(points[i]);
+            buckets.listed[next[at] as usize] = i as u32;
+            next[at] += 1;
+        }
+        buckets
+    }
+
+    fn column(&self, x: f64) -> usize {
+        // A cast of what is negative gives 0.
+        (((x - self.bounds.min.x) / self.cell) as usize).min(self.columns - 1)
+    }
+
+    fn row(&self, y: f64) -> usize {
+        (((y - self.bounds.min.y) / self.cell) as usize).min(self.rows - 1)
+    }
+
+    fn cell_of(&self, p: Point) -> usize {
+        self.row(p.y) * self.columns + self.column(p.x)
+    }
+
+    /// Calls `visit` with all points whose cells touch a box.
+    fn visit(&self, area: &Rect, mut visit: impl FnMut(u32)) {
+        if self.listed.is_empty() || !self.bounds.touches(area) {
+            return;
+        }
+        let (left, right) = (self.column(area.min.x), self.column(area.max.x));
+        for row in self.row(area.min.y)..=self.row(area.max.y) {
+            let start = self.starts[row * self.columns + left] as usize;
+            let end = self.starts[row * self.columns + right + 1] as usize;
+            self.listed[start..end].iter().for_each(|&i| visit(i));
+        }
+    }
+}
+
+/// The drawn tiles of a paint by place.
+pub(super) struct Nearby<'a> {
+    sites: &'a Sites,
+    tiles: &'a Tiles,
+    buckets: Buckets,
+    /// The radius of the least disc round its site that holds the tile, for every tile.
+    radii: Vec<f64>,
+    /// The greatest of them.
+    reach: f64,
+}
+
+impl<'a> Nearby<'a> {
+    pub(super) fn new(sites: &'a Sites, tiles: &'a Tiles) -> Self {
+        let radius = |i: usize| {
+            let corners = tiles.outline(i).iter();
+            corners.map(|&corner| sites.points[i].distance_squared(corner)).fold(0.0, f64::max).sqrt()
+        };
+        let radii: Vec<f64> = (0..tiles.len()).map(|i| if tiles.is_drawn(i) { radius(i) } else { 0.0 }).collect();
+        let reach = radii.iter().copied().fold(0.0, f64::max);
+        let drawn = (0..tiles.len()).filter(|&i| tiles.is_drawn(i));
+        let buckets = Buckets::new(&sites.points, drawn, reach);
+        Self { sites, tiles, buckets, radii, reach }
+    }
+
+    /// The radius of a drawn tile about its site in millimetres.
+    pub(super) fn radius(&self, tile: usize) -> f64 {
+        self.radii[tile]
+    }
+
+    /// A tile's outline.
+    pub(super) fn outline(&self, tile: u32) -> &'a [Point] {
+        self.tiles.outline(tile as usize)
+    }
+
+    /// Calls `visit` with every drawn tile that may come nearer to a place than `within` millimetres.
+    pub(super) fn near(&self, place: Point, within: f64, mut visit: impl FnMut(u32)) {
+        let area = Rect::new(place, place).grown(within + self.reach);
+        self.buckets.visit(&area, |i| {
+            let reach = within + self.radii[i as usize];
+            if self.sites.points[i as usize].distance_squared(place) < reach * reach {
+                visit(i);
+            }
+        });
+    }
+
+    /// Calls `visit` with every drawn tile that a line may cross, some of them more than once. The line is taken piece by
+    /// piece, since the disc round a long one holds most of the page.
+    pub(super) fn along(&self, a: Point, b: Point, mut visit: impl FnMut(u32)) {
+        let length = a.distance(b);
+        let pieces = (length / (2.0 * self.buckets.cell)).ceil().clamp(1.0, MOST_CELLS) as u32;
+        for piece in 0..pieces {
+            let middle = a.lerp(b, (f64::from(piece) + 0.5) / f64::from(pieces));
+            self.near(middle, length / f64::from(pieces) / 2.0, &mut visit);
+        }
+    }
+}
+
+/// The corners of an outline by place.
+pub(super) struct Corners {
+    points: Vec<Point>,
+    buckets: Buckets,
+}
+
+impl Corners {
+    pub(super) fn new(points: Vec<Point>) -> Self {
+        let buckets = Buckets::new(&points, 0..points.len(), 0.0);
+        Self { points, buckets }
+    }
+
+    /// Calls `visit` with every corner in a box, and some round it.
+    pub(super) fn within(&self, area: &Rect, mut visit: impl FnMut(Point)) {
+        self.buckets.visit(area, |i| visit(self.points[i as usize]));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn nothing_within_a_box_is_missed(
+            points in prop::collection::vec((0.0..10.0, -5.0..5.0), 0..60),
+            (x, y, w, h) in (-1.0..11.0, -6.0..6.0, 0.0..4.0, 0.0..4.0),
+        ) {
+            let points: Vec<Point> = points.into_iter().map(|(x, y)| Point::new(x, y)).collect();
+            let area = Rect::new(Point::new(x, y), Point::new(x + w, y + h));
+            let mut found = Vec::new();
+            Corners::new(points.clone()).within(&area, |p| found.push(p));
+            for &p in points.iter().filter(|p| area.contains(**p)) {
+                prop_assert_eq!(found.iter().filter(|&&q| q == p).count(), points.iter().filter(|&&q| q == p).count());
+            }
+        }
+    }
+}

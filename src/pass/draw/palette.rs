@@ -1,0 +1,140 @@
+//! From the fills of a tone to the layers of the drawing: which marks lie together.
+//!
+//! A slot is a list of marks of one ink and one pen. Threads fill batches, one for each slot; batches are put together in
+//! the order of the tiles.
+
+use crate::drawing::{Dots, Layer, Strokes};
+use crate::geom::{Length, Point};
+use crate::scene::{Cap, Colour, Fill, FillKind, Ground, Paint};
+
+/// What a slot holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    Areas,
+    Strokes(Length, Cap),
+    Dots(Length),
+}
+
+impl Kind {
+    fn of(fill: &Fill) -> Self {
+        match &fill.kind {
+            FillKind::Lines(hatch) | FillKind::Dashes { hatch, .. } => Self::Strokes(hatch.pen, hatch.cap),
+            FillKind::Dots { radius, .. } => Self::Dots(*radius),
+            FillKind::Solid => Self::Areas,
+        }
+    }
+}
+
+/// The slots of a paint.
+pub(super) struct Palette {
+    slots: Vec<(Colour, Kind)>,
+    /// The slot of every fill.
+    fills: Vec<usize>,
+    /// The slot of the ground's own fill.
+    ground: usize,
+}
+
+impl Palette {
+    /// `ink` is used by fills without their own.
+    pub(super) fn new(paint: &Paint, ink: Colour) -> Self {
+        let mut slots = Vec::new();
+        let mut slot = |fill: &Fill| {
+            let wanted = (fill.ink.unwrap_or(ink), Kind::of(fill));
+            slots.iter().position(|slot| *slot == wanted).unwrap_or_else(|| {
+                slots.push(wanted);
+                slots.len() - 1
+            })
+        };
+        // The ground comes first, for it lies lowest.
+        let ground = match &paint.tone.ground {
+            Some(Ground::Fill { fill, .. }) => slot(fill),
+            Some(Ground::Nearest) | None => 0,
+        };
+        let fills = paint.tone.fill.iter().map(slot).collect();
+        Self { slots, fills, ground }
+    }
+
+    /// One empty batch for each slot.
+    pub(super) fn batches(&self) -> Vec<Batch> {
+        self.slots.iter().map(|_| Batch::default()).collect()
+    }
+
+    /// The slot of a fill by its place in the tone's list.
+    pub(super) fn slot(&self, fill: usize) -> usize {
+        self.fills[fill]
+    }
+
+    /// The slot of the ground's own fill.
+    pub(super) fn ground_slot(&self) -> usize {
+        self.ground
+    }
+
+    /// Puts batches together, in order; layers without a mark are left out.
+    pub(super) fn layers(&self, name: &str, groups: &[String], chunks: Vec<Vec<Batch>>) -> Vec<Layer> {
+        let mut whole = self.batches();
+        for (slot, batch) in whole.iter_mut().enumerate() {
+            let total = |count: fn(&Batch) -> usize| chunks.iter().map(|chunk| count(&chunk[slot])).sum();
+            batch.lines.reserve_exact(total(|b| b.lines.len()));
+            batch.dots.reserve_exact(total(|b| b.dots.len()));
+            batch.ends.reserve_exact(total(|b| b.ends.len()));
+        }
+        for chunk in chunks {
+            for (whole, part) in whole.iter_mut().zip(chunk) {
+                let start = whole.lines.len() + whole.dots.len();
+                whole.lines.extend_from_slice(&part.lines);
+                whole.dots.extend_from_slice(&part.dots);
+                whole.ends.extend(part.ends.iter().map(|end| start + end));
+                whole.areas.extend(part.areas);
+            }
+        }
+        let mut layers: Vec<Layer> = Vec::new();
+        for (&(ink, kind), batch) in self.slots.iter().zip(whole).filter(|(_, batch)| !batch.is_empty()) {
+            let at = layers.iter().position(|layer| layer.ink == ink).unwrap_or_else(|| {
+                let (groups, name) = (groups.to_vec(), name.to_owned());
+                layers.push(Layer { groups, name, ink, areas: Vec::new(), strokes: Vec::new(), dots: Vec::new() });
+                layers.len() - 1
+            });
+            let layer = &mut layers[at];
+            match kind {
+                Kind::Areas => layer.areas = batch.areas,
+                Kind::Strokes(pen, cap) => {
+                    let (lines, bundle_ends) = (batch.lines, batch.ends);
+                    layer.strokes.push(Strokes { lines, bundle_ends, ..Strokes::new(pen, cap) });
+                }
+                Kind::Dots(radius) => {
+                    layer.dots.push(Dots { radius, centres: batch.dots, bundle_ends: batch.ends });
+                }
+            }
+        }
+        layers
+    }
+}
+
+/// Marks of one slot. All are of the slot's kind.
+#[derive(Default)]
+pub(super) struct Batch {
+    pub(super) lines: Vec<[Point; 2]>,
+    pub(super) dots: Vec<Point>,
+    pub(super) areas: Vec<Vec<Vec<Point>>>,
+    /// Where each tile's lines or dots end.
+    ends: Vec<usize>,
+}
+
+impl Batch {
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// How many marks there are.
+    pub(super) fn len(&self) -> usize {
+        self.lines.len() + self.dots.len() + self.areas.len()
+    }
+
+    /// Ends the marks of a tile, if it has any.
+    pub(super) fn end_bundle(&mut self) {
+        let end = self.lines.len() + self.dots.len();
+        if end > self.ends.last().copied().unwrap_or(0) {
+            self.ends.push(end);
+        }
+    }
+}

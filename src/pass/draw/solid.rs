@@ -1,0 +1,91 @@
+//! Tiles inked all over: what is seen of them, as outlines.
+
+use crate::field::{Field, Node};
+use crate::geom::clip::convex_overlap;
+use crate::geom::{Point, Rect, ring_bounds};
+use crate::region::{FillRule, Region};
+use crate::scene::Blend;
+
+use super::job::{Job, Layer};
+use super::palette::Batch;
+
+/// Shares of a layer's lines from here on fill the tile: a solid area has no lines to leave out.
+const HALF: f64 = 0.5;
+
+/// Cells over the longer side of an area whose end along the field is looked for.
+const CELLS: f64 = 32.0;
+
+/// Draws what is seen of a layer's area. Crumbs are dropped by the region's booleans.
+pub(super) fn draw(job: &Job<'_>, layer: &Layer<'_>, covers: &[u32], out: &mut Batch) {
+    if layer.share < HALF {
+        return;
+    }
+    let field = &job.paint.tone.k;
+    let has_contour = job.paint.tone.blend == Blend::Contour && !matches!(field.node(), Node::Constant(_));
+    let hidden: Vec<Vec<Point>> = covers
+        .iter()
+        .map(|&cover| job.nearby.outline(cover))
+        .filter(|outline| convex_overlap(outline, layer.area))
+        .map(<[Point]>::to_vec)
+        .collect();
+    if hidden.is_empty() && !layer.is_clipped && !has_contour {
+        if layer.area.len() > 2 {
+            out.areas.push(vec![layer.area.to_vec()]);
+        }
+        return;
+    }
+    let mut seen = Region::polygon(layer.area);
+    if !hidden.is_empty() {
+        seen = seen.difference(&Region::from_rings(hidden, FillRule::NonZero));
+    }
+    if layer.is_clipped {
+        seen = seen.intersection(job.bank.region());
+    }
+    if has_contour {
+        seen = seen.intersection(&above(field, f64::from(layer.number) - 0.5, &ring_bounds(layer.area)));
+    }
+    push(&seen, out);
+}
+
+/// Adds a region's polygons to the areas.
+pub(super) fn push(region: &Region, out: &mut Batch) {
+    let rings = |polygon: &crate::geom::Polygon| polygon.rings().cloned().collect();
+    out.areas.extend(region.polygons().iter().map(rings));
+}
+
+/// Where in a box a field is at least `threshold`: square cells are halved along a diagonal, and over each half the field
+/// is taken to be even between its corners.
+fn above(field: &Field, threshold: f64, bounds: &Rect) -> Region {
+    let cell = bounds.width().max(bounds.height()) / CELLS;
+    let lines = |extent: f64| (extent / cell).ceil().clamp(1.0, CELLS) as usize;
+    let (columns, rows) = (lines(bounds.width()), lines(bounds.height()));
+    let corner = |column: usize, row: usize| {
+        let p = Point::new(bounds.min.x + column as f64 * cell, bounds.min.y + row as f64 * cell);
+        (p, field.at(p) - threshold)
+    };
+    let mut rings = Vec::new();
+    for row in 0..rows {
+        for column in 0..columns {
+            let [a, b] = [corner(column, row), corner(column + 1, row)];
+            let [c, d] = [corner(column + 1, row + 1), corner(column, row + 1)];
+            rings.extend([[a, b, c], [a, c, d]].iter().map(part).filter(|ring| ring.len() > 2));
+        }
+    }
+    Region::from_rings(rings, FillRule::NonZero)
+}
+
+/// The part of a triangle where a value that is even between its corners is not negative.
+fn part(triangle: &[(Point, f64); 3]) -> Vec<Point> {
+    let mut ring = Vec::with_capacity(4);
+    let mut before = triangle[2];
+    for &corner in triangle {
+        if (before.1 >= 0.0) != (corner.1 >= 0.0) {
+            ring.push(before.0.lerp(corner.0, before.1 / (before.1 - corner.1)));
+        }
+        if corner.1 >= 0.0 {
+            ring.push(corner.0);
+        }
+        before = corner;
+    }
+    ring
+}
