@@ -1,5 +1,7 @@
 //! The two front ends: text to [`ast::Document`] and back.
 
+#[cfg(test)]
+mod arbitrary;
 pub mod ast;
 pub mod format;
 pub mod kake;
