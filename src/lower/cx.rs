@@ -8,7 +8,8 @@ use crate::diag::{Code, Diagnostic};
 use crate::field::Image;
 use crate::geom::Length;
 use crate::loader::Loader;
-use crate::region::{Region, SvgFile};
+use crate::region::Region;
+use crate::region::svg::SvgFile;
 use crate::span::{SourceId, Sources, Span};
 
 use super::LowerConfig;

@@ -380,7 +380,9 @@ fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span
     let module = &modules[scope.module];
     let mut known: Vec<&str> = module.functions.keys().copied().collect();
     known.extend(module.opened.iter().flat_map(|&opened| modules[opened].functions.keys().copied()));
-    known.extend(vocabulary::callables());
+    for callable in vocabulary::callables() {
+        known.push(callable);
+    }
     let hint = match tone::find(cx, scope.module, name) {
         Some(_) => Some(format!("`{name}` is a tone: `paint REGION with {name}(…)`")),
         None => did_you_mean(name, known),

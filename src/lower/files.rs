@@ -7,7 +7,8 @@ use crate::diag::{Code, Diagnostic, did_you_mean};
 use crate::field::{Channel, Image};
 use crate::geom::Rect;
 use crate::loader;
-use crate::region::{Region, Selection, SvgError, SvgFile};
+use crate::region::Region;
+use crate::region::svg::{Selection, SvgError, outlines};
 
 use super::call::Call;
 use super::modules::{self, ROOT_HINT};
@@ -70,7 +71,7 @@ pub(super) fn svg(call: &mut Call<'_, '_, '_>, fit: Option<Rect>) -> Option<Regi
     let drawing = match call.cx.drawings.get(&path) {
         Some(known) => known.clone(),
         None => {
-            let drawing = match SvgFile::parse(&bytes) {
+            let drawing = match outlines(&bytes) {
                 Ok(drawing) => Some(Rc::new(drawing)),
                 Err(error) => {
                     refuse(call, &path, &error);
@@ -81,11 +82,23 @@ pub(super) fn svg(call: &mut Call<'_, '_, '_>, fit: Option<Rect>) -> Option<Regi
             drawing
         }
     }?;
-    let id = match call.value("id") {
-        Some(Value::String(text)) => Some(text.value),
-        _ => None,
+    let mut chosen: Vec<(&str, Rc<str>)> = Vec::new();
+    for name in ["id", "layer", "class"] {
+        if let Some(Value::String(text)) = call.value(name) {
+            chosen.push((name, text.value));
+        }
+    }
+    let selection = match &chosen[..] {
+        [] => Selection::Whole,
+        [("id", id)] => Selection::Id(id),
+        [("layer", layer)] => Selection::Layer(layer),
+        [(_, class)] => Selection::Class(class),
+        [_, (second, _), ..] => {
+            let message = "`svg` takes one of `id`, `layer` and `class`";
+            call.cx.report(Diagnostic::error(Code::Duplicate, call.span_of(second), message));
+            return None;
+        }
     };
-    let selection = id.as_deref().map_or(Selection::Whole, Selection::Id);
     match drawing.region(selection, fit) {
         Ok(region) => Some(region),
         Err(error) => {
@@ -96,29 +109,36 @@ pub(super) fn svg(call: &mut Call<'_, '_, '_>, fit: Option<Rect>) -> Option<Regi
 }
 
 fn refuse(call: &mut Call<'_, '_, '_>, path: &str, error: &SvgError) {
+    let unknown = |argument: &str, asked: &str, known: &[String]| {
+        let message = format!("`{path}` has no {argument} `{asked}`");
+        let hint = did_you_mean(asked, known.iter().map(String::as_str)).unwrap_or_else(|| some(argument, known));
+        Diagnostic::error(Code::SvgId, call.span_of(argument), message).hint(hint)
+    };
     let diagnostic = match error {
-        SvgError::NoSuchId { id, known } => {
-            let message = format!("`{path}` has no element `{id}`");
-            let hint = did_you_mean(id, known.iter().map(String::as_str)).unwrap_or_else(|| some_ids(known));
-            Diagnostic::error(Code::SvgId, call.span_of("id"), message).hint(hint)
+        SvgError::NoSuchId { id, known } => unknown("id", id, known),
+        SvgError::NoSuchLayer { layer, known } => unknown("layer", layer, known),
+        SvgError::NoSuchClass { class, known } => unknown("class", class, known),
+        SvgError::NotFilled => {
+            let argument = ["id", "layer", "class"].into_iter().find(|name| call.has(name)).unwrap_or("file");
+            let message = format!("nothing is filled in what is asked for of `{path}`");
+            Diagnostic::error(Code::SvgId, call.span_of(argument), message)
+                .hint("regions are outlines of what is filled")
         }
-        SvgError::NotFilled { id } => {
-            let message = format!("the element `{id}` of `{path}` fills no area");
-            Diagnostic::error(Code::SvgId, call.span_of("id"), message).hint("regions are outlines of what is filled")
-        }
-        other => {
-            let message = format!("`{path}` is not an SVG that can be read: {other}");
-            Diagnostic::error(Code::Svg, call.span_of("file"), message)
-        }
+        SvgError::Unreadable(_)
+        | SvgError::Compressed
+        | SvgError::TooDeep { .. }
+        | SvgError::TooLarge
+        | SvgError::NoSize => Diagnostic::error(Code::Svg, call.span_of("file"), format!("`{path}`: {error}")),
     };
     call.cx.report_value(diagnostic);
 }
 
-fn some_ids(known: &[String]) -> String {
-    let shown: Vec<_> = known.iter().take(8).map(|id| format!("`{id}`")).collect();
+/// A few of the names that there are.
+fn some(argument: &str, known: &[String]) -> String {
+    let shown: Vec<_> = known.iter().take(8).map(|name| format!("`{name}`")).collect();
     match (shown.is_empty(), known.len() > shown.len()) {
-        (true, _) => "no element of the file has an id".to_owned(),
-        (false, false) => format!("the file's ids are {}", shown.join(", ")),
-        (false, true) => format!("the file's ids begin with {}", shown.join(", ")),
+        (true, _) => format!("the file has no {argument} at all"),
+        (false, false) => format!("it has {}", shown.join(", ")),
+        (false, true) => format!("it has {} and others", shown.join(", ")),
     }
 }

@@ -65,8 +65,8 @@ pub(super) const SIGNATURES: &[Signature] = &[
             required("file", STRING),
             optional("id", STRING),
             optional("fit", BOX),
-            later("layer"),
-            later("class"),
+            optional("layer", STRING),
+            optional("class", STRING),
             later("colour"),
         ],
         build: |call| {
