@@ -65,9 +65,7 @@ pub fn cut(
         Blend::Step => k.iter().map(|&k| layers::step(k)).collect(),
         Blend::Partial => k.iter().map(|&k| layers::partial(k)).collect(),
         Blend::Dither => layers::dither(&k, graph),
-        Blend::Contour => {
-            chunks.iter().flat_map(|chunk| &chunk.most).map(|&full| Layers { full, part: 0.0 }).collect()
-        }
+        Blend::Contour => chunks.iter().flat_map(|chunk| &chunk.most).map(|&full| Layers { full, part: 0.0 }).collect(),
     };
     warnings.extend(clamped(paint, &field, &standing));
     if standing.iter().all(|&standing| standing == Standing::Absent) {

@@ -183,12 +183,7 @@ impl Plane<'_> {
     }
 
     /// What tiles hide of each line of a band.
-    fn hidden(
-        &self,
-        band: &[(i64, f64)],
-        tiles: &[(u32, (f64, f64))],
-        scratch: &mut Scratch,
-    ) -> Vec<Vec<(f64, f64)>> {
+    fn hidden(&self, band: &[(i64, f64)], tiles: &[(u32, (f64, f64))], scratch: &mut Scratch) -> Vec<Vec<(f64, f64)>> {
         let mut hidden = vec![Vec::new(); band.len()];
         let (Some(first), Some(last)) = (band.first(), band.last()) else { return hidden };
         for &(tile, (low, high)) in tiles {

@@ -139,13 +139,7 @@ impl<'a> Stencil<'a> {
     }
 
     /// Cuts a polyline segment by segment and joins what is seen on both sides of a corner.
-    fn cut_polyline(
-        &self,
-        polyline: &[Point],
-        strokes: &Strokes,
-        scratch: &mut Scratch,
-        out: &mut Vec<Vec<Point>>,
-    ) {
+    fn cut_polyline(&self, polyline: &[Point], strokes: &Strokes, scratch: &mut Scratch, out: &mut Vec<Vec<Point>>) {
         let mut pieces: Vec<Vec<Point>> = Vec::new();
         let mut is_cut = false;
         for pair in polyline.windows(2) {

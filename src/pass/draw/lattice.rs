@@ -64,14 +64,10 @@ impl Lattice {
         (self.range.1 - self.range.0 + 1.0).max(0.0)
     }
 
-    /// The step in millimetres.
-    pub(super) fn step(&self) -> f64 {
-        self.step
-    }
-
     /// The places with their numbers, in order.
     pub(super) fn places(self) -> impl DoubleEndedIterator<Item = (i64, f64)> {
-        let range = if self.count() > 0.0 { self.range.0 as i64..(self.range.1 as i64).saturating_add(1) } else { 0..0 };
+        let range =
+            if self.count() > 0.0 { self.range.0 as i64..(self.range.1 as i64).saturating_add(1) } else { 0..0 };
         range.map(move |i| (i, self.origin + i as f64 * self.step))
     }
 }

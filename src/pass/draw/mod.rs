@@ -64,17 +64,8 @@ pub fn draw(
     let &Stages { sites, graph, angles, tiles } = stages;
     let (bank, nearby) = (Bank::new(&visible), Nearby::new(sites, tiles));
     let (palette, budget) = (Palette::new(paint, setting.ink), Budget::new(limits));
-    let job = Job {
-        paint,
-        sites,
-        graph,
-        angles,
-        tiles,
-        bank: &bank,
-        nearby: &nearby,
-        palette: &palette,
-        budget: &budget,
-    };
+    let job =
+        Job { paint, sites, graph, angles, tiles, bank: &bank, nearby: &nearby, palette: &palette, budget: &budget };
     let chunks = chunks(&job, canvas).map_err(|exceeded| exceeded.diagnostic(limits, paint.span))?;
     Ok(palette.layers(&paint.name, &setting.groups, chunks))
 }

@@ -33,7 +33,8 @@ impl Buckets {
         let even = (width * height / count as f64).sqrt();
         let cell = cell.max(even).max(width / MOST_CELLS).max(height / MOST_CELLS).max(f64::MIN_POSITIVE);
         let (columns, rows) = ((width / cell) as usize + 1, (height / cell) as usize + 1);
-        let mut buckets = Self { bounds, cell, columns, rows, starts: vec![0; columns * rows + 1], listed: vec![0; count] };
+        let mut buckets =
+            Self { bounds, cell, columns, rows, starts: vec![0; columns * rows + 1], listed: vec![0; count] };
         for i in index.clone() {
             let at = buckets.cell_of(points[i]);
             buckets.starts[at + 1] += 1;
