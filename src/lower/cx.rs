@@ -10,7 +10,7 @@ use crate::geom::Length;
 use crate::loader::Loader;
 use crate::region::Region;
 use crate::region::svg::SvgFile;
-use crate::span::{SourceId, Sources, Span};
+use crate::span::{SourceId, Span};
 
 use super::LowerConfig;
 use super::params;
@@ -23,7 +23,6 @@ const DEPTH: u32 = 4096;
 /// The state of lowering. `'a` is the life of the documents.
 pub(super) struct Cx<'a, 'c> {
     pub(super) modules: &'c [Module<'a>],
-    pub(super) sources: &'c Sources,
     pub(super) config: &'c LowerConfig,
     pub(super) loader: &'c dyn Loader,
     pub(super) seed: u64,
@@ -59,14 +58,12 @@ pub(super) struct Cx<'a, 'c> {
 impl<'a, 'c> Cx<'a, 'c> {
     pub(super) fn new(
         modules: &'c [Module<'a>],
-        sources: &'c Sources,
         loader: &'c dyn Loader,
         config: &'c LowerConfig,
         diagnostics: Vec<Diagnostic>,
     ) -> Self {
         Self {
             modules,
-            sources,
             config,
             loader,
             seed: 0,

@@ -68,6 +68,24 @@ pub struct Lowered {
 /// Every independent mistake is reported; the scene is there only if none of them is an error.
 #[must_use]
 pub fn lower(path: &str, loader: &dyn Loader, config: &LowerConfig) -> Lowered {
+    // Values lead into each other as deep as the limits allow, which the stack of a small thread has no room for.
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(STACK);
+        match thread.spawn_scoped(scope, || lower_here(path, loader, config)) {
+            Ok(running) => match running.join() {
+                Ok(lowered) => lowered,
+                Err(panic) => std::panic::resume_unwind(panic),
+            },
+            // Where no thread can be had, the stack at hand has to do.
+            Err(_) => lower_here(path, loader, config),
+        }
+    })
+}
+
+/// Bytes of stack for lowering; only what is used is taken from the machine.
+const STACK: usize = 256 << 20;
+
+fn lower_here(path: &str, loader: &dyn Loader, config: &LowerConfig) -> Lowered {
     let mut sources = Sources::new();
     let mut diagnostics = Vec::new();
     let files = modules::read(path, loader, &mut sources, &mut diagnostics);
@@ -76,7 +94,7 @@ pub fn lower(path: &str, loader: &dyn Loader, config: &LowerConfig) -> Lowered {
     let mut lowered = match modules.is_empty() {
         true => Lowered { scene: None, diagnostics, sources, files: BTreeMap::new(), canvas_span: None },
         false => {
-            let mut cx = Cx::new(&modules, &sources, loader, config, diagnostics);
+            let mut cx = Cx::new(&modules, loader, config, diagnostics);
             let scene = scene(&mut cx, &sets);
             let (diagnostics, files) = cx.finish();
             let canvas_span = files_canvas(&modules);
