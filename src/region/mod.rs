@@ -142,7 +142,7 @@ impl Region {
     #[must_use]
     pub fn inset(&self, distance: Length) -> Self {
         // A distance that is no number changes nothing, like none.
-        if self.is_empty() || !(distance.to_mm().abs() > 0.0) {
+        if self.is_empty() || distance.to_mm().is_nan() || distance == Length::ZERO {
             return self.clone();
         }
         Self::from_resolved(overlay::grow(self.polygons(), -distance))

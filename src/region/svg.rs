@@ -25,7 +25,7 @@ const SNAP: f64 = 1.0 / 1024.0;
 const PIXELS_PER_INCH: f64 = 96.0;
 
 /// The stack for reading a file: deep `use` chains are read by functions that call themselves.
-const STACK: usize = 256 << 20;
+const STACK: usize = 64 << 20;
 
 /// A file that has been read.
 #[derive(Debug, Clone)]
@@ -172,12 +172,10 @@ impl SvgFile {
         let place = Placement { origin: page.min, scale: page.width() / self.size[0] };
 
         let mut rings: BTreeMap<Option<usize>, Vec<Vec<Point>>> = BTreeMap::new();
-        for range in self.selected(selection)? {
-            for shape in self.shapes.get(range).unwrap_or_default() {
-                // Each by its own rule; of what comes out, outlines run one way and holes the other, so that all of
-                // them together are their union.
-                rings.entry(shape.clip).or_default().extend(shape.rings(&place));
-            }
+        for shape in self.selected(selection)?.into_iter().filter_map(|i| self.shapes.get(i)) {
+            // Each by its own rule; of what comes out, outlines run one way and holes the other, so that all of them
+            // together are their union.
+            rings.entry(shape.clip).or_default().extend(shape.rings(&place));
         }
         let mut clips = BTreeMap::new();
         let mut seen = Vec::new();
@@ -198,11 +196,11 @@ impl SvgFile {
         if region.is_empty() { Err(SvgError::NotFilled) } else { Ok(region) }
     }
 
-    /// Runs of shapes in order; none overlaps another.
-    fn selected(&self, selection: Selection<'_>) -> Result<Vec<Range<usize>>, SvgError> {
+    /// The numbers of the shapes, in order and each once.
+    fn selected(&self, selection: Selection<'_>) -> Result<BTreeSet<usize>, SvgError> {
         let known = |names: &BTreeMap<String, Vec<Range<usize>>>| names.keys().cloned().collect();
         let ranges = match selection {
-            Selection::Whole => return Ok(vec![0..self.shapes.len()]),
+            Selection::Whole => return Ok((0..self.shapes.len()).collect()),
             Selection::Id(id) => {
                 self.ids.get(id).ok_or_else(|| SvgError::NoSuchId { id: id.into(), known: known(&self.ids) })?
             }
@@ -216,8 +214,7 @@ impl SvgFile {
                 .ok_or_else(|| SvgError::NoSuchClass { class: class.into(), known: known(&self.classes) })?,
         };
         // An element may lie within another of the same class.
-        let indices: BTreeSet<usize> = ranges.iter().cloned().flatten().collect();
-        Ok(indices.into_iter().map(|i| i..i + 1).collect())
+        Ok(ranges.iter().cloned().flatten().collect())
     }
 
     /// The area of a clip path and all those outside it. The ones found are kept in `found`.

@@ -166,11 +166,19 @@ fn deep_nesting_is_an_error_and_no_crash() {
 #[test]
 fn bombs_are_errors_and_no_crash() {
     // Each group uses the one before: as deep as the file is long.
-    let chain: String = (1..3000).map(|i| format!("<g id='g{i}'><use href='#g{}'/></g>", i - 1)).collect();
-    let text = format!(
-        "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'><rect id='g0' width='1' height='1'/>{chain}</svg>"
-    );
-    assert_eq!(outlines(text.as_bytes()).unwrap_err(), SvgError::TooLarge);
+    let chain = |length: usize| {
+        let links: String = (1..length).map(|i| format!("<g id='g{i}'><use href='#g{}'/></g>", i - 1)).collect();
+        outlines(
+            format!(
+                "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'>\
+                 <defs><rect id='g0' width='1' height='1'/>{links}</defs><use href='#g{}'/></svg>",
+                length - 1
+            )
+            .as_bytes(),
+        )
+    };
+    assert_eq!(bounds(&chain(330).unwrap(), Selection::Whole), [0.0, 0.0, 1.0, 1.0]);
+    assert_eq!(chain(3000).unwrap_err(), SvgError::TooLarge);
     // Ten entities, each ten times the one before.
     let entities: String =
         (1..12).map(|i| format!("<!ENTITY e{i} '{}'>", format!("&e{};", i - 1).repeat(10))).collect();
