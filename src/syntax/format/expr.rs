@@ -49,8 +49,7 @@ impl Formatter<'_> {
                 let broken = properties
                     .first()
                     .is_some_and(|first| self.comments.is_broken_between(expr.start(), first.start()));
-                let items = self.items(properties, expr.end(), true, Self::property);
-                Layout::Concat(vec![lead, items.enclose(CURLY, broken)])
+                Layout::Concat(vec![lead, self.record(properties, expr.end(), broken)])
             }
             ExprKind::Unary(operators, operand) => {
                 let text: String = operators
@@ -89,25 +88,26 @@ impl Formatter<'_> {
         Layout::Concat(vec![name, Layout::text(": "), self.expr(&property.value)])
     }
 
-    /// A string with what it interpolates, which stays on one line unless doc comments stand in it.
+    /// `{ name: value }`, which closes at `end`.
+    pub(super) fn record(&mut self, properties: &[Property], end: usize, broken: bool) -> Layout {
+        self.items(properties, end, true, Self::property).enclose(CURLY, broken)
+    }
+
+    /// A string with what it interpolates, which stands on one line.
     fn string(&mut self, expr: &Expr, parts: &[StringPart]) -> Layout {
-        let mut out = vec![self.comments.word(expr.span, "\"")];
+        let mut text = String::from("\"");
+        let lead = self.comments.word(expr.span, "");
         for part in parts {
             match part {
-                StringPart::Text(text) => {
-                    let mut escaped = String::new();
-                    escape(text, &mut escaped);
-                    out.push(Layout::Text(escaped));
-                }
+                StringPart::Text(plain) => escape(plain, &mut text),
                 StringPart::Expr(inner) => {
-                    let inner = self.expr(inner);
-                    let inner = if inner.is_broken() { inner } else { Layout::Text(inner.print(usize::MAX)) };
-                    out.extend([Layout::text("{"), inner, Layout::text("}")]);
+                    let inner = self.expr(inner).print(usize::MAX);
+                    text.extend(["{", &inner, "}"]);
                 }
             }
         }
-        out.push(Layout::text("\""));
-        Layout::Concat(out)
+        text.push('"');
+        Layout::Concat(vec![lead, Layout::Text(text)])
     }
 
     fn call(&mut self, call: &Expr, callee: &Expr, arguments: &[Argument]) -> Layout {
@@ -162,7 +162,8 @@ impl Formatter<'_> {
             tail.push(Layout::text(format!("{} ", operator.symbol())));
             tail.push(self.expr(operand));
         }
-        Layout::group(vec![first, Layout::indent(tail)], false)
+        let tail = if rigid { Layout::Concat(tail) } else { Layout::indent(tail) };
+        Layout::group(vec![first, tail], false)
     }
 
     fn conditional(&mut self, expr: &Expr, branches: &[(Expr, Expr)], otherwise: &Expr) -> Layout {

@@ -145,7 +145,8 @@ impl Formatter<'_> {
         for item in list {
             let doc = item.doc().filter(|_| self.docs);
             let start = doc.map_or(item.start(), |doc| doc.span.start as usize);
-            let gap = self.comments.gap(previous, start, keep_inline);
+            // A comment between a doc comment and its item would part them.
+            let gap = self.comments.gap(previous, start, keep_inline && doc.is_none());
             if let Some(last) = entries.last_mut() {
                 last.trailing = gap.trailing;
             }
@@ -188,8 +189,7 @@ fn doc_lines(doc: &Doc) -> Vec<Lead> {
 impl Items {
     /// Whether comments keep the list from standing on one line.
     pub(super) fn is_broken(&self) -> bool {
-        !self.tail.is_empty()
-            || self.entries.iter().any(|entry| !entry.leads.is_empty() || !entry.trailing.is_empty())
+        !self.tail.is_empty() || self.entries.iter().any(|entry| !entry.leads.is_empty() || !entry.trailing.is_empty())
     }
 
     /// The items with line ends between and before them, and what separates them.

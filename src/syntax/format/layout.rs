@@ -193,18 +193,10 @@ mod tests {
         for (i, item) in items.iter().enumerate() {
             inner.push(Layout::Line { flat: if i == 0 { "" } else { " " }, blank: false });
             inner.push(Layout::text(*item));
-            inner.push(if i + 1 < items.len() {
-                Layout::text(",")
-            } else {
-                Layout::Choice { flat: "", broken: "," }
-            });
+            inner.push(if i + 1 < items.len() { Layout::text(",") } else { Layout::Choice { flat: "", broken: "," } });
         }
-        let parts = vec![
-            Layout::text("["),
-            Layout::indent(inner),
-            Layout::Line { flat: "", blank: false },
-            Layout::text("]"),
-        ];
+        let parts =
+            vec![Layout::text("["), Layout::indent(inner), Layout::Line { flat: "", blank: false }, Layout::text("]")];
         Layout::group(parts, false)
     }
 

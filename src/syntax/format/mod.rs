@@ -12,12 +12,14 @@ mod items;
 mod layout;
 mod shape;
 mod statement;
+#[cfg(test)]
+mod tests;
 
 pub use shape::{expression_shape, shape};
 
 use self::comments::Comments;
 use self::layout::{Layout, WIDTH};
-use crate::syntax::ast::{Document, Expr};
+use crate::syntax::ast::{Document, Expr, Parameter, Property};
 
 /// The canonical text of a document. `text` is what it was read from as `.kake`; for a document that was read from
 /// TOML it is empty, and lines and empty lines are chosen anew. The document has no syntax errors.
@@ -45,8 +47,14 @@ pub(in crate::syntax) fn documented_expression(expr: &Expr) -> String {
     formatter.expr(expr).print(usize::MAX)
 }
 
+/// Properties as a record, with their doc comments.
+pub(in crate::syntax) fn documented_record(properties: &[Property]) -> String {
+    let mut formatter = Formatter { comments: Comments::none(), docs: true };
+    formatter.record(properties, 0, false).print(usize::MAX)
+}
+
 /// A parameter list without its brackets, on one line and without doc comments.
-pub(in crate::syntax) fn parameters(list: &[crate::syntax::ast::Parameter]) -> String {
+pub(in crate::syntax) fn parameters(list: &[Parameter]) -> String {
     let mut formatter = Formatter { comments: Comments::none(), docs: false };
     let mut parts = Vec::new();
     for (i, parameter) in list.iter().enumerate() {

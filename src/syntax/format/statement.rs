@@ -135,8 +135,8 @@ impl Formatter<'_> {
         let (Some(first), Some(last)) = (list.first(), list.last()) else { return Layout::text("()") };
         let close = self.comments.find(last.end(), limit, ')').map_or(last.end(), |at| at + 1);
         let start = first.doc().filter(|_| self.docs).map_or(first.start(), |doc| doc.span.start as usize);
-        let broken = self.comments.is_broken_between(start, close)
-            && self.comments.find(last.end(), close, ',').is_some();
+        let broken =
+            self.comments.is_broken_between(start, close) && self.comments.find(last.end(), close, ',').is_some();
         self.items(list, close, true, Self::parameter).enclose(ROUND, broken)
     }
 
