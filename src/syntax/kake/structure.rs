@@ -209,7 +209,8 @@ impl<'a> Builder<'a> {
         self.pending.truncate(frame.outer);
         frame.matches = 0;
         frame.is_fresh = false;
-        frame.wants_value = true;
+        // Of a word that is no keyword nothing is known, so that the next line is not taken for part of it.
+        frame.wants_value = frame.shape == Shape::Properties || !keyword.is_empty();
         if frame.shape == Shape::Statements {
             (frame.keyword, frame.has_seed, frame.indent) = (keyword, false, indent);
         }
@@ -261,6 +262,8 @@ impl<'a> Builder<'a> {
         let is_start = token.leads && is_keyword(word) && self.is_followed_as_statement(index, word);
         if is_start {
             self.close_forgotten(index, word);
+        } else if token.leads && self.text_of(index + 1) == ":" {
+            self.close_before_property(index);
         }
         let Some(frame) = self.frames.last() else { return };
         match frame.shape {
@@ -406,6 +409,21 @@ impl<'a> Builder<'a> {
         self.unclosed(keep, index);
     }
 
+    /// Closes the brackets of values when a property begins where an operator or comma is due.
+    fn close_before_property(&mut self, index: usize) {
+        if !self.frames.last().is_some_and(|top| top.shape == Shape::Values && !top.wants_value) {
+            return;
+        }
+        // Brackets nested beyond the limit are not searched, so that the work stays linear.
+        let mut searched = self.frames.iter().enumerate().rev().take(NESTING);
+        let around = searched.find(|(_, frame)| frame.shape != Shape::Values);
+        if let Some((properties, frame)) = around
+            && frame.shape == Shape::Properties
+        {
+            self.unclosed(properties + 1, index);
+        }
+    }
+
     fn open(&mut self, index: usize, token: &Token) {
         self.begin_if_fresh(index);
         let bracket = self.text_of(index);
@@ -530,7 +548,8 @@ impl<'a> Builder<'a> {
     /// them as one mistake.
     fn unclosed(&mut self, keep: usize, end: usize) {
         let mut forgotten = Vec::new();
-        let mut is_known = false;
+        // Where nesting passes the limit, that is reported and enough.
+        let mut is_known = self.is_too_deep;
         while self.frames.len() > keep.max(1) {
             if let Some(frame) = self.frames.last() {
                 is_known |= frame.has_bad_text;
