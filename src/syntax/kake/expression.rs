@@ -360,6 +360,8 @@ impl Reader<'_> {
         let span = self.span(&pair);
         let (mut values, height) = self.members(pair);
         let Some(otherwise) = values.pop() else { return Self::error(span) };
+        // The pair itself goes on to the next word.
+        let span = Span { end: otherwise.span.end, ..span };
         let mut branches = Vec::new();
         let mut values = values.into_iter();
         while let (Some(condition), Some(value)) = (values.next(), values.next()) {
@@ -378,25 +380,24 @@ impl Reader<'_> {
         for arm in inner {
             let mut parts = parts(arm);
             let (Some(pattern), Some(value)) = (parts.next(), parts.next()) else { continue };
-            let place = self.span(&pattern);
             let pattern = self.pattern(pattern);
             let value = self.node(value);
             height = height.max(value.height);
-            if let Some(pattern) = pattern {
-                arms.push(Arm { pattern, span: place, value: value.expr });
+            if let Some((pattern, span)) = pattern {
+                arms.push(Arm { pattern, span, value: value.expr });
             }
         }
         self.over(ExprKind::Match { subject: Box::new(subject.expr), arms }, span, height)
     }
 
     /// A pattern; one that is none has been reported, and its match cannot be trusted to cover its cases.
-    fn pattern(&mut self, pair: Pair<'_, Rule>) -> Option<Pattern> {
-        let span = self.span(&pair);
+    fn pattern(&mut self, pair: Pair<'_, Rule>) -> Option<(Pattern, Span)> {
         let inner = pair.into_inner().next()?;
         if inner.as_rule() == Rule::any {
-            return Some(Pattern::Any);
+            return Some((Pattern::Any, self.span(&inner)));
         }
-        let pattern = match self.expression(inner).kind {
+        let Expr { kind, span } = self.expression(inner);
+        let pattern = match kind {
             ExprKind::Bool(value) => Some(Pattern::Bool(value)),
             ExprKind::Number { value, text, unit: None } => Some(Pattern::Number(value, text)),
             ExprKind::String(parts) => {
@@ -417,7 +418,7 @@ impl Reader<'_> {
             let message = "a pattern is a string, a number without sign or unit, `true`, `false` or `_`";
             self.report(Diagnostic::error(Code::Syntax, span, message));
         }
-        pattern
+        pattern.map(|pattern| (pattern, span))
     }
 
     // -------------------------------------------------------------------------------------------- leaves

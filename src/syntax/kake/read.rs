@@ -32,6 +32,8 @@ pub(super) struct Reader<'t> {
     pub(super) tokens: Vec<Token>,
     roles: Vec<Role>,
     too_deep: Vec<usize>,
+    /// The tokens that are strings without an end.
+    unclosed: Vec<usize>,
     /// Where the faults that are already reported begin.
     faults: Vec<usize>,
     remarks: Remarks,
@@ -69,12 +71,15 @@ impl<'t> Reader<'t> {
             diagnostics.push(fault.diagnostic);
         }
         starts.sort_unstable();
+        let unclosed = tokens.iter().enumerate().filter(|(_, token)| token.kind == Kind::BadText);
+        let unclosed = unclosed.map(|(index, _)| index).collect();
         Self {
             text,
             places,
             tokens,
             roles: structure.roles,
             too_deep: structure.too_deep,
+            unclosed,
             faults: starts,
             remarks,
             base: 0,
@@ -345,7 +350,15 @@ impl<'t> Reader<'t> {
             return None;
         }
         let start = self.tokens.get(range.start).map_or(self.text.len(), |token| token.start);
-        let end = range.end.checked_sub(1).and_then(|last| self.tokens.get(last)).map_or(start, |token| token.end);
+        // The rest of a line behind a quote that is not closed is not text that the structure knows.
+        let unclosed = self.unclosed.partition_point(|&token| token < range.start);
+        let end = match self.unclosed.get(unclosed).filter(|&&token| token < range.end) {
+            Some(&token) => self.tokens.get(token).map_or(start, |token| token.start),
+            None => {
+                let last = range.end.checked_sub(1).and_then(|last| self.tokens.get(last));
+                last.map_or(start, |token| token.end)
+            }
+        };
         self.base = start;
         match Grammar::parse(rule, self.text.get(start..end.max(start)).unwrap_or_default()) {
             Ok(pairs) => Some(pairs),
@@ -381,7 +394,7 @@ impl<'t> Reader<'t> {
             return;
         };
         let found = self.tokens.partition_point(|token| token.end <= offset);
-        let found = (found < range.end).then_some(found);
+        let mut found = (found < range.end).then_some(found);
         let until = found.and_then(|found| self.tokens.get(found)).map_or(offset, |token| token.start.max(offset));
         // What is wrong with a bracket or string has been said already.
         let known = self.faults.partition_point(|&fault| fault < self.base);
@@ -389,6 +402,13 @@ impl<'t> Reader<'t> {
             return;
         }
         let last = range.end.checked_sub(1).filter(|&last| last >= range.start);
+        // Where a heading lacks a value, the grammar takes the block's brace for that of a record.
+        let mut tried = positives.as_slice();
+        if let (Rule::one_head, None, Some(brace)) = (rule, found, last)
+            && self.text_of(brace) == "{"
+        {
+            (found, tried) = (last, &[Rule::expression]);
+        }
         let place = expected::Place {
             found: found.map(|index| (self.kind_of(index), self.text_of(index))),
             before: found
@@ -408,7 +428,7 @@ impl<'t> Reader<'t> {
             (None, Some(last)) => self.span_of(last, last),
             (None, None) => self.places.span(self.text.len(), self.text.len()),
         };
-        let diagnostic = expected::message(positives, &place, span);
+        let diagnostic = expected::message(tried, &place, span);
         self.report(diagnostic);
     }
 }
