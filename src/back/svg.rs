@@ -380,3 +380,184 @@ fn write_points(mut points: impl Iterator<Item = Point>, text: &mut Vec<u8>) {
         here = there;
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use usvg::roxmltree;
+
+    use super::super::samples::{layer, lines, on_threads, page, ring, scattered};
+    use super::*;
+    use crate::drawing::{Dots, Strokes};
+
+    fn text_of(drawing: &Drawing, metadata: Option<&Metadata>) -> String {
+        let mut out = Vec::new();
+        write(drawing, metadata, &mut out).unwrap();
+        String::from_utf8(out).unwrap()
+    }
+
+    fn small() -> Drawing {
+        let mut sky = layer("sky", Colour::BLACK);
+        sky.groups.push("back & <ground>".to_owned());
+        let square = [[(1.0, 1.0), (4.0, 1.0)], [(1.0, 2.0), (1.0, 4.5)]];
+        sky.strokes.push(lines(0.25, Cap::Butt, &[&square, &[[(10.0, 10.0), (7.123_44, 9.5)]]]));
+        let mut ground = sky.clone();
+        ground.ink = Colour { r: 255, g: 0, b: 16, a: 128 };
+        ground.strokes = vec![Strokes::new(Length::mm(0.1), Cap::Round)];
+        ground.strokes[0].polylines = vec![ring(&[(0.0, 0.0), (1.0, 0.5), (2.0, 0.0), (0.0, 0.0)])];
+        let mut dots = layer("dots", Colour::BLACK);
+        dots.dots.push(Dots {
+            radius: Length::mm(0.5),
+            centres: ring(&[(3.0, 3.0), (4.0, 4.0)]),
+            bundle_ends: vec![2],
+        });
+        let hole = ring(&[(5.0, 5.0), (6.0, 5.0), (6.0, 6.0)]);
+        dots.areas.push(vec![ring(&[(4.0, 4.0), (8.0, 4.0), (8.0, 8.0), (4.0, 8.0)]), hole]);
+        Drawing { page: page(60.0, 40.5), layers: vec![sky, ground, layer("empty", Colour::BLACK), dots] }
+    }
+
+    #[test]
+    fn small_drawing() {
+        insta::assert_snapshot!(text_of(&small(), None), @r##"
+        <svg height="40.5mm" viewBox="0 0 60 40.5" width="60mm" xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape">
+        <rect fill="#ffffff" height="40.5" id="paper" width="60"/>
+        <g id="layer1" inkscape:groupmode="layer" inkscape:label="back &amp; &lt;ground&gt;">
+        <g id="layer2" inkscape:groupmode="layer" inkscape:label="sky">
+        <g fill="none" stroke="#000000" stroke-linecap="butt" stroke-linejoin="round" stroke-width="0.25">
+        <path d="M1 1h3M1 2v2.5"/>
+        <path d="M10 10l-2.8766-0.5"/>
+        </g>
+        <g opacity="0.502">
+        <g fill="none" stroke="#ff0010" stroke-linecap="round" stroke-linejoin="round" stroke-width="0.1">
+        <path d="M0 0l1 0.5l1-0.5z"/>
+        </g>
+        </g>
+        </g>
+        </g>
+        <g id="layer3" inkscape:groupmode="layer" inkscape:label="dots">
+        <g fill="#000000" fill-rule="evenodd">
+        <path d="M4 4h4v4h-4zM5 5h1v1z"/>
+        </g>
+        <g fill="none" stroke="#000000" stroke-linecap="round" stroke-linejoin="round" stroke-width="1">
+        <path d="M3 3h0M4 4h0"/>
+        </g>
+        </g>
+        </svg>
+        "##);
+    }
+
+    #[test]
+    fn other_readers_understand_it() {
+        let drawing = small();
+        let tree = usvg::Tree::from_str(&text_of(&drawing, None), &usvg::Options::default()).unwrap();
+        fn paths(group: &usvg::Group, found: &mut Vec<(f32, bool)>) {
+            for node in group.children() {
+                match node {
+                    usvg::Node::Group(group) => paths(group, found),
+                    usvg::Node::Path(path) => found.push((
+                        path.stroke().map_or(0.0, |stroke| stroke.width().get()),
+                        path.abs_stroke_bounding_box().width() > 0.0,
+                    )),
+                    _ => {}
+                }
+            }
+        }
+        let mut found = Vec::new();
+        paths(tree.root(), &mut found);
+        // The paper, two tiles, the closed stroke, the area and the dots.
+        assert_eq!(found, [(0.0, true), (0.25, true), (0.25, true), (0.1, true), (0.0, true), (1.0, true)]);
+    }
+
+    #[test]
+    fn paper_may_be_missing_or_translucent() {
+        let mut drawing = small();
+        drawing.page.paper = None;
+        assert!(!text_of(&drawing, None).contains("<rect"));
+        drawing.page.paper = Some(Colour { r: 1, g: 2, b: 3, a: 51 });
+        let wanted = r##"<rect fill="#010203" fill-opacity="0.2" height="40.5" id="paper" width="60"/>"##;
+        assert!(text_of(&drawing, None).contains(wanted));
+    }
+
+    #[test]
+    fn hostile_names_stay_well_formed() {
+        let mut drawing = small();
+        let name = "\"'>]]>\0\u{1b}[31m\u{fffe}\nおはよう &amp; <g id=\"layer1\">";
+        drawing.layers[0].name = name.to_owned();
+        let text = text_of(&drawing, None);
+        let document = roxmltree::Document::parse(&text).unwrap();
+        let inkscape = "http://www.inkscape.org/namespaces/inkscape";
+        let labels: Vec<_> = document.descendants().filter_map(|node| node.attribute((inkscape, "label"))).collect();
+        let wanted = "\"'>]]>\u{fffd}\u{fffd}[31m\u{fffd} おはよう &amp; <g id=\"layer1\">";
+        assert_eq!(labels, ["back & <ground>", wanted, "sky", "dots"]);
+        let mut ids: Vec<_> = document.descendants().filter_map(|node| node.attribute("id")).collect();
+        ids.sort_unstable();
+        assert_eq!(ids, ["layer1", "layer2", "layer3", "layer4", "paper"]);
+    }
+
+    #[test]
+    fn many_tiles_share_paths() {
+        let few = scattered(100.0, 100.0, MANY);
+        let many = scattered(100.0, 100.0, MANY + 1);
+        let count = |text: &str| text.matches("<path").count();
+        assert_eq!(count(&text_of(&few, None)), MANY);
+        let shared = text_of(&many, None);
+        // Each of the five kinds of mark may leave one path that is not full.
+        assert!(count(&shared) <= MANY / TOGETHER + 5, "{}", count(&shared));
+        // No mark is lost: a tile has ten subpaths, a longer stroke or area one.
+        assert_eq!(shared.matches('M').count(), (MANY + 1) / 5 * 32 + 10);
+        assert!(roxmltree::Document::parse(&shared).is_ok());
+    }
+
+    #[test]
+    fn areas_that_share_a_path_run_the_same_way_round() {
+        let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+        let mut back = square;
+        back.reverse();
+        let areas = [vec![ring(&square)], vec![ring(&back)], vec![ring(&square), ring(&back)]];
+        let text = String::from_utf8(portion_text(&area_pieces(&areas, 2))).unwrap();
+        assert_eq!(
+            text,
+            "<path fill-rule=\"nonzero\" d=\"M0 0h1v1h-1zM0 0h1v1h-1z\"/>\n\
+             <path d=\"M0 0h1v1h-1zM0 1h1v-1h-1z\"/>\n"
+        );
+    }
+
+    #[test]
+    fn a_tile_longer_than_a_piece_is_one_path() {
+        let line = [Point::new(0.0, 0.0), Point::new(1.0, 1.0)];
+        let mut strokes = Strokes::new(Length::mm(0.1), Cap::Butt);
+        strokes.lines = vec![line; 2 * PIECE + 1];
+        strokes.bundle_ends = vec![2 * PIECE, 2 * PIECE + 1];
+        let mut one = layer("one", Colour::BLACK);
+        one.strokes.push(strokes);
+        let text = text_of(&Drawing { page: page(10.0, 10.0), layers: vec![one] }, None);
+        assert_eq!((text.matches("<path").count(), text.matches("\"/>\n").count()), (2, 3));
+        assert_eq!(text.matches("M0 0l1 1").count(), 2 * PIECE + 1);
+    }
+
+    #[test]
+    fn long_strokes_do_not_drift() {
+        let points: Vec<Point> =
+            (0..1000).map(|i| Point::new(f64::from(i) * 0.333_333, f64::from(i % 7) / 3.0)).collect();
+        let mut text = Vec::new();
+        write_polyline(&points, &mut text);
+        let tree = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' width='400' height='9'><path stroke='red' d='{}'/></svg>",
+            String::from_utf8(text).unwrap()
+        );
+        let tree = usvg::Tree::from_str(&tree, &usvg::Options::default()).unwrap();
+        let Some(usvg::Node::Path(path)) = tree.root().children().first() else { panic!("no path") };
+        assert_eq!(path.data().points().len(), points.len());
+        for (read, wanted) in path.data().points().iter().zip(&points) {
+            let off = (f64::from(read.x) - wanted.x).abs().max((f64::from(read.y) - wanted.y).abs());
+            assert!(off < 5e-4, "{off}");
+        }
+    }
+
+    #[test]
+    fn threads_do_not_matter() {
+        let drawing = scattered(100.0, 100.0, 30_000);
+        let [one, four] = on_threads(|| text_of(&drawing, None));
+        assert!(one == four);
+    }
+}
