@@ -93,10 +93,12 @@ fn plain<'a, W: Write>(encoder: &mut Encoder<'_, W>, colour: ColorType, pixels: 
 
 /// Sets up a picture of few colours: one bit a pixel for black and white, otherwise a palette.
 fn indexed<'a, W: Write>(encoder: &mut Encoder<'_, W>, palette: &[Colour], pixels: &'a Pixels) -> Cow<'a, [u8]> {
+    // Packed rows are few bytes, and neither filters nor the fast compression can make anything of them.
+    encoder.set_compression(Compression::Balanced);
+    encoder.set_filter(Filter::NoFilter);
     if palette.iter().all(|&colour| colour == Colour::BLACK || colour == Colour::WHITE) {
         encoder.set_color(ColorType::Grayscale);
         encoder.set_depth(BitDepth::One);
-        encoder.set_filter(Filter::NoFilter);
         let values: Vec<u8> = palette.iter().map(|&colour| u8::from(colour == Colour::WHITE)).collect();
         return Cow::Owned(pack(pixels, 1, |index| values.get(usize::from(index)).copied().unwrap_or(0)));
     }
@@ -112,7 +114,6 @@ fn indexed<'a, W: Write>(encoder: &mut Encoder<'_, W>, palette: &[Colour], pixel
         _ => (BitDepth::Eight, 8),
     };
     encoder.set_depth(depth);
-    encoder.set_filter(Filter::NoFilter);
     if bits == 8 { Cow::Borrowed(&pixels.data) } else { Cow::Owned(pack(pixels, bits, |index| index)) }
 }
 
@@ -130,7 +131,7 @@ fn pack(pixels: &Pixels, bits: usize, value: impl Fn(u8) -> u8) -> Vec<u8> {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
+#[allow(clippy::unwrap_used, clippy::panic)]
 mod tests {
     use std::io::Cursor;
 

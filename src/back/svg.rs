@@ -382,7 +382,7 @@ fn write_points(mut points: impl Iterator<Item = Point>, text: &mut Vec<u8>) {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
+#[allow(clippy::unwrap_used, clippy::panic)]
 mod tests {
     use usvg::roxmltree;
 
@@ -466,6 +466,62 @@ mod tests {
         paths(tree.root(), &mut found);
         // The paper, two tiles, the closed stroke, the area and the dots.
         assert_eq!(found, [(0.0, true), (0.25, true), (0.25, true), (0.1, true), (0.0, true), (1.0, true)]);
+    }
+
+    /// What another program's reader and stroker make of a picture.
+    fn drawn_by_others(text: &str, [width, height]: [u32; 2]) -> tiny_skia::Pixmap {
+        fn draw(group: &usvg::Group, scale: tiny_skia::Transform, pixmap: &mut tiny_skia::Pixmap) {
+            for node in group.children() {
+                let path = match node {
+                    usvg::Node::Group(group) => {
+                        draw(group, scale, pixmap);
+                        continue;
+                    }
+                    usvg::Node::Path(path) => path,
+                    _ => panic!("neither group nor path"),
+                };
+                let transform = path.abs_transform().post_concat(scale);
+                let paint_of = |paint: &usvg::Paint| {
+                    let usvg::Paint::Color(colour) = paint else { panic!("no colour") };
+                    let mut paint = tiny_skia::Paint::default();
+                    paint.set_color_rgba8(colour.red, colour.green, colour.blue, 255);
+                    paint
+                };
+                if let Some(fill) = path.fill() {
+                    let rule = match fill.rule() {
+                        usvg::FillRule::NonZero => tiny_skia::FillRule::Winding,
+                        usvg::FillRule::EvenOdd => tiny_skia::FillRule::EvenOdd,
+                    };
+                    pixmap.fill_path(path.data(), &paint_of(fill.paint()), rule, transform, None);
+                }
+                if let Some(stroke) = path.stroke() {
+                    let paint = paint_of(stroke.paint());
+                    pixmap.stroke_path(path.data(), &paint, &stroke.to_tiny_skia(), transform, None);
+                }
+            }
+        }
+        let tree = usvg::Tree::from_str(text, &usvg::Options::default()).unwrap();
+        let scale =
+            tiny_skia::Transform::from_scale(width as f32 / tree.size().width(), height as f32 / tree.size().height());
+        let mut pixmap = tiny_skia::Pixmap::new(width, height).unwrap();
+        draw(tree.root(), scale, &mut pixmap);
+        pixmap
+    }
+
+    #[test]
+    fn other_programs_draw_what_the_raster_shows() {
+        let drawing = scattered(40.0, 30.0, 60);
+        let pixels = crate::back::raster::render(&drawing);
+        let other = drawn_by_others(&text_of(&drawing, None), drawing.page.pixels);
+        let (mut sum, mut far) = (0, 0);
+        for (i, theirs) in other.pixels().iter().enumerate() {
+            let ours = pixels.colour(i % pixels.width, i / pixels.width).unwrap();
+            let off = ours.g.abs_diff(theirs.green());
+            sum += u64::from(off);
+            far += u32::from(off > 100);
+        }
+        // Rounding apart, and the angles at which strokers make arcs.
+        assert!(far <= 5 && sum < other.pixels().len() as u64, "{far} {sum}");
     }
 
     #[test]
