@@ -3,10 +3,12 @@
 //! They decide nothing about the picture: marks are already cut, placed and inked. The same drawing gives the same
 //! bytes whatever the number of threads, the locale and the time; SVG text is the same on every machine.
 
+mod inking;
 pub mod json;
 pub mod metadata;
 mod number;
 mod outline;
+mod path;
 pub mod png;
 pub mod raster;
 pub mod svg;
