@@ -4,6 +4,8 @@
 //! and notes for further places. [`render`] draws them through miette, [`to_json`] gives the same as data.
 
 mod codes;
+mod excerpt;
+mod place;
 mod render;
 
 pub use codes::Code;

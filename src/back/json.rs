@@ -77,3 +77,48 @@ struct Dot {
     radius: Length,
     centre: Point,
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::super::samples::{layer, lines, page, ring, scattered};
+    use super::*;
+    use crate::drawing::Dots;
+    use crate::scene::Colour;
+
+    fn text_of(drawing: &Drawing) -> String {
+        let mut out = Vec::new();
+        write(drawing, &mut out).unwrap();
+        String::from_utf8(out).unwrap()
+    }
+
+    #[test]
+    fn every_kind_of_mark() {
+        let mut sky = layer("sky", Colour { r: 1, g: 2, b: 3, a: 4 });
+        sky.groups.push("back".to_owned());
+        sky.strokes.push(lines(0.25, Cap::Butt, &[&[[(0.1, 1.0), (1.0 / 3.0, 1.0)]]]));
+        sky.strokes[0].polylines.push(ring(&[(0.0, 0.0), (1.0, 0.5), (2.0, 0.0)]));
+        sky.dots.push(Dots { radius: Length::mm(0.5), centres: ring(&[(3.0, 3.5)]), bundle_ends: vec![1] });
+        sky.areas.push(vec![ring(&[(4.0, 4.0), (8.0, 4.0), (8.0, 8.0)])]);
+        let text = text_of(&Drawing { page: page(10.0, 10.0), layers: vec![sky] });
+        let wanted = concat!(
+            r##"{"layers":[{"name":"sky","ink":"#01020304","strokes":["##,
+            r##"{"pen":0.25,"cap":"butt","points":[[0.1,1.0],[0.3333333333333333,1.0]]},"##,
+            r##"{"pen":0.25,"cap":"butt","points":[[0.0,0.0],[1.0,0.5],[2.0,0.0]]}],"##,
+            r##""dots":[{"radius":0.5,"centre":[3.0,3.5]}],"##,
+            r##""areas":[[[[4.0,4.0],[8.0,4.0],[8.0,8.0]]]],"groups":["back"]}]}"##,
+            "\n"
+        );
+        assert_eq!(text, wanted);
+    }
+
+    #[test]
+    fn reads_back_in_full() {
+        let drawing = scattered(50.0, 50.0, 100);
+        let read: serde_json::Value = serde_json::from_str(&text_of(&drawing)).unwrap();
+        for (layer, read) in drawing.layers.iter().zip(read["layers"].as_array().unwrap()) {
+            let count = |key: &str| read[key].as_array().unwrap().len() as u64;
+            assert_eq!(count("strokes") + count("dots") + count("areas"), layer.marks());
+        }
+    }
+}

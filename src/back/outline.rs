@@ -16,6 +16,8 @@ const TOLERANCE: f64 = 0.02;
 /// Marks with a point farther from the sheet's corner, in millimetres, are left out: nothing that is cut to a sheet lies
 /// there, and single precision ends.
 const FAR: f64 = 1e7;
+/// How far, in pixels, a mark may reach out of its tile before it is cut.
+const MARGIN: f64 = 4_096.0;
 /// What is added and taken away again to round to 1/256: 1.5 times 2^44, where neighbouring numbers are that far apart.
 const ROUNDER: f64 = 26_388_279_066_624.0;
 
@@ -62,10 +64,10 @@ impl Tile {
     }
 
     /// A place on the page in the tile's pixels.
-    fn place(&self, p: Point) -> [f32; 2] {
+    fn place(&self, p: Point) -> Point {
         let round = |v: f64| (v + ROUNDER) - ROUNDER;
         let (x, y) = (round(p.x * self.scale.x), round(p.y * self.scale.y));
-        [(x - self.origin[0] as f64) as f32, (y - self.origin[1] as f64) as f32]
+        Point::new(x - self.origin[0] as f64, y - self.origin[1] as f64)
     }
 }
 
@@ -270,20 +272,59 @@ fn bar(a: Point, b: Point, along: Vec2, half: f64, tile: Tile, path: &mut PathBu
     trace([a + -side, b + -side, b + side, a + side].into_iter(), tile, path);
 }
 
-fn trace(corners: impl Iterator<Item = Point>, tile: Tile, path: &mut PathBuilder) {
+/// Adds a closed ring to a path. What lies far outside the tile is cut off first: the scan converter computes with few
+/// bits.
+fn trace(corners: impl Iterator<Item = Point> + Clone, tile: Tile, path: &mut PathBuilder) {
+    let [width, height] = tile.size.map(|n| n as f64);
+    let bounds = Rect::new(Point::default(), Point::new(width, height)).grown(MARGIN);
+    let placed = corners.map(|corner| tile.place(corner));
+    if placed.clone().all(|p| bounds.contains(p)) {
+        push_ring(placed, path);
+    } else {
+        push_ring(cut_ring(placed.collect(), &bounds).into_iter(), path);
+    }
+}
+
+fn push_ring(corners: impl Iterator<Item = Point>, path: &mut PathBuilder) {
     let mut started = false;
     for corner in corners {
-        let [x, y] = tile.place(corner);
         if started {
-            path.line_to(x, y);
+            path.line_to(corner.x as f32, corner.y as f32);
         } else {
-            path.move_to(x, y);
+            path.move_to(corner.x as f32, corner.y as f32);
             started = true;
         }
     }
     if started {
         path.close();
     }
+}
+
+/// What of a ring lies in a box (Sutherland and Hodgman 1974). Parts that fall apart stay joined along the box's sides.
+fn cut_ring(mut ring: Vec<Point>, bounds: &Rect) -> Vec<Point> {
+    let sides: [fn(Point, &Rect) -> f64; 4] = [
+        |p, bounds| p.x - bounds.min.x,
+        |p, bounds| bounds.max.x - p.x,
+        |p, bounds| p.y - bounds.min.y,
+        |p, bounds| bounds.max.y - p.y,
+    ];
+    for inside in sides {
+        let Some(&last) = ring.last() else { break };
+        let mut kept = Vec::with_capacity(ring.len() + 4);
+        let mut a = last;
+        for b in ring {
+            let (depth_a, depth_b) = (inside(a, bounds), inside(b, bounds));
+            if (depth_a >= 0.0) != (depth_b >= 0.0) {
+                kept.push(a.lerp(b, depth_a / (depth_a - depth_b)));
+            }
+            if depth_b >= 0.0 {
+                kept.push(b);
+            }
+            a = b;
+        }
+        ring = kept;
+    }
+    ring
 }
 
 /// Whether a point is a number, and on this side of [`FAR`].

@@ -93,10 +93,12 @@ fn plain<'a, W: Write>(encoder: &mut Encoder<'_, W>, colour: ColorType, pixels: 
 
 /// Sets up a picture of few colours: one bit a pixel for black and white, otherwise a palette.
 fn indexed<'a, W: Write>(encoder: &mut Encoder<'_, W>, palette: &[Colour], pixels: &'a Pixels) -> Cow<'a, [u8]> {
+    // Packed rows are few bytes, and neither filters nor the fast compression can make anything of them.
+    encoder.set_compression(Compression::Balanced);
+    encoder.set_filter(Filter::NoFilter);
     if palette.iter().all(|&colour| colour == Colour::BLACK || colour == Colour::WHITE) {
         encoder.set_color(ColorType::Grayscale);
         encoder.set_depth(BitDepth::One);
-        encoder.set_filter(Filter::NoFilter);
         let values: Vec<u8> = palette.iter().map(|&colour| u8::from(colour == Colour::WHITE)).collect();
         return Cow::Owned(pack(pixels, 1, |index| values.get(usize::from(index)).copied().unwrap_or(0)));
     }
@@ -112,7 +114,6 @@ fn indexed<'a, W: Write>(encoder: &mut Encoder<'_, W>, palette: &[Colour], pixel
         _ => (BitDepth::Eight, 8),
     };
     encoder.set_depth(depth);
-    encoder.set_filter(Filter::NoFilter);
     if bits == 8 { Cow::Borrowed(&pixels.data) } else { Cow::Owned(pack(pixels, bits, |index| index)) }
 }
 
@@ -127,4 +128,132 @@ fn pack(pixels: &Pixels, bits: usize, value: impl Fn(u8) -> u8) -> Vec<u8> {
         }));
     }
     packed
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, clippy::panic)]
+mod tests {
+    use std::io::Cursor;
+
+    use super::super::samples::{layer, lines, on_threads, page, scattered};
+    use super::*;
+    use crate::scene::{Cap, Depth};
+
+    const RED: Colour = Colour { r: 255, g: 0, b: 0, a: 255 };
+
+    fn bytes_of(drawing: &Drawing) -> Vec<u8> {
+        let mut out = Vec::new();
+        write(drawing, None, &mut out).unwrap();
+        out
+    }
+
+    /// What a reader makes of a drawing: colour type, depth, and the pixels as red, green, blue and alpha.
+    fn decoded(drawing: &Drawing) -> (ColorType, BitDepth, Vec<[u8; 4]>) {
+        let bytes = bytes_of(drawing);
+        let decoder = ::png::Decoder::new(Cursor::new(&bytes));
+        let mut reader = decoder.read_info().unwrap();
+        let info = reader.info();
+        let header = (info.color_type, info.bit_depth);
+        assert_eq!([info.width, info.height], drawing.page.pixels);
+        assert_eq!(info.srgb, Some(SrgbRenderingIntent::RelativeColorimetric));
+        let dims = info.pixel_dims.unwrap();
+        assert_eq!((dims.xppu, dims.yppu, dims.unit), (10_000, 10_000, Unit::Meter));
+        let mut decoder = ::png::Decoder::new(Cursor::new(&bytes));
+        decoder.set_transformations(::png::Transformations::normalize_to_color8());
+        reader = decoder.read_info().unwrap();
+        let mut data = vec![0; reader.output_buffer_size().unwrap()];
+        let frame = reader.next_frame(&mut data).unwrap();
+        let pixels = data
+            .chunks_exact(frame.color_type.samples())
+            .map(|pixel| match *pixel {
+                [v] => [v, v, v, 255],
+                [v, a] => [v, v, v, a],
+                [r, g, b] => [r, g, b, 255],
+                [r, g, b, a] => [r, g, b, a],
+                _ => panic!("no pixel"),
+            })
+            .collect();
+        (header.0, header.1, pixels)
+    }
+
+    /// Strokes of some inks, one below the other; 13 pixels wide, which is no whole number of bytes.
+    fn bars(inks: &[Colour], paper: Option<Colour>, depth: Depth) -> Drawing {
+        let bar = |(i, &ink): (usize, &Colour)| {
+            let y = 0.37 + 0.5 * i as f64;
+            let mut bar = layer(&format!("bar {i}"), ink);
+            bar.strokes.push(lines(0.25, Cap::Butt, &[&[[(0.2, y), (1.1, y + 0.1)]]]));
+            bar
+        };
+        let mut page = page(1.3, 0.5 * inks.len() as f64 + 0.5);
+        page.pixels = [13, (5 * inks.len() + 5) as u32];
+        page.paper = paper;
+        page.depth = depth;
+        Drawing { page, layers: inks.iter().enumerate().map(bar).collect() }
+    }
+
+    #[test]
+    fn pixels_come_back_in_every_form() {
+        let (black, white) = (Colour::BLACK, Some(Colour::WHITE));
+        let grey = Colour { r: 90, g: 90, b: 90, a: 255 };
+        let inks: Vec<Colour> = (0..20).map(|i| Colour { r: i, g: 200, b: 255 - i, a: 255 }).collect();
+        for (inks, paper, depth, colour_type, bit_depth) in [
+            (&[black][..], white, Depth::Eight, ColorType::Grayscale, BitDepth::Eight),
+            (&[grey], white, Depth::Eight, ColorType::Grayscale, BitDepth::Eight),
+            (&[black, RED], white, Depth::Eight, ColorType::Rgb, BitDepth::Eight),
+            (&[black], None, Depth::Eight, ColorType::GrayscaleAlpha, BitDepth::Eight),
+            (&[RED], None, Depth::Eight, ColorType::Rgba, BitDepth::Eight),
+            (&[black], white, Depth::One, ColorType::Grayscale, BitDepth::One),
+            (&[Colour::WHITE], Some(black), Depth::One, ColorType::Grayscale, BitDepth::One),
+            (&[RED], white, Depth::One, ColorType::Indexed, BitDepth::One),
+            (&[black], None, Depth::One, ColorType::Indexed, BitDepth::One),
+            (&[black, RED], white, Depth::One, ColorType::Indexed, BitDepth::Two),
+            (&inks[..5], white, Depth::One, ColorType::Indexed, BitDepth::Four),
+            (&inks[..], None, Depth::One, ColorType::Indexed, BitDepth::Eight),
+            (&[], None, Depth::Eight, ColorType::GrayscaleAlpha, BitDepth::Eight),
+        ] {
+            let drawing = bars(inks, paper, depth);
+            let (found_type, found_depth, found) = decoded(&drawing);
+            assert_eq!((found_type, found_depth), (colour_type, bit_depth), "{inks:?} {paper:?} {depth:?}");
+            let pixels = render(&drawing);
+            let wanted: Vec<[u8; 4]> = (0..pixels.height)
+                .flat_map(|y| (0..pixels.width).map(move |x| (x, y)))
+                .map(|(x, y)| {
+                    let Colour { r, g, b, a } = pixels.colour(x, y).unwrap();
+                    [r, g, b, a]
+                })
+                .collect();
+            assert_eq!(found, wanted, "{inks:?} {paper:?} {depth:?}");
+            assert!(inks.is_empty() || wanted.iter().any(|pixel| pixel != &wanted[0]));
+        }
+    }
+
+    #[test]
+    fn a_size_of_nothing_is_an_error() {
+        let mut drawing = bars(&[], None, Depth::Eight);
+        drawing.page.pixels = [0, 4];
+        let error = write(&drawing, None, &mut Vec::new()).unwrap_err();
+        assert!(matches!(error, PngError::Format(_)), "{error}");
+    }
+
+    #[test]
+    fn what_the_file_answers_is_reported() {
+        struct Full;
+        impl Write for Full {
+            fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+                Err(io::Error::other("disk full"))
+            }
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+        let error = write(&bars(&[], None, Depth::Eight), None, &mut Full).unwrap_err();
+        assert!(matches!(&error, PngError::Io(_)) && error.to_string() == "disk full", "{error:?}");
+    }
+
+    #[test]
+    fn threads_do_not_matter() {
+        let drawing = scattered(60.0, 60.0, 500);
+        let [one, four] = on_threads(|| bytes_of(&drawing));
+        assert!(one == four);
+    }
 }

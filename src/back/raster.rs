@@ -9,9 +9,11 @@
 use rayon::prelude::*;
 use tiny_skia::{Mask, PathBuilder, Transform};
 
+pub use super::inking::Format;
+use super::inking::Inking;
 use super::outline::{Marks, Outliner, Scale, Tile};
 use crate::drawing::{Drawing, Layer};
-use crate::scene::{Colour, Depth};
+use crate::scene::Colour;
 
 /// Width of a tile in pixels; the scan converter works on up to 8191.
 const TILE_WIDTH: usize = 2_048;
@@ -19,36 +21,6 @@ const TILE_WIDTH: usize = 2_048;
 const TILE_HEIGHT: usize = 256;
 /// Strokes or dots that are filled as one path. Few enough that a path's box stays small.
 const TOGETHER: usize = 32;
-/// The least coverage that counts as ink where there are no levels between.
-const HALF: u8 = 128;
-
-/// What a pixel is made of.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Format {
-    /// A byte: black 0 to white 255.
-    Grey,
-    /// Grey and alpha.
-    GreyAlpha,
-    /// Red, green and blue.
-    Rgb,
-    /// Red, green, blue and alpha, not premultiplied.
-    Rgba,
-    /// A byte: which of at most 256 colours.
-    Indexed(Vec<Colour>),
-}
-
-impl Format {
-    /// Bytes of a pixel.
-    #[must_use]
-    pub fn channels(&self) -> usize {
-        match self {
-            Self::Grey | Self::Indexed(_) => 1,
-            Self::GreyAlpha => 2,
-            Self::Rgb => 3,
-            Self::Rgba => 4,
-        }
-    }
-}
 
 /// A picture, row by row from the top left.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -114,179 +86,6 @@ pub fn render(drawing: &Drawing) -> Pixels {
         );
     }
     Pixels { width, height, format, data }
-}
-
-/// How ink and paper mix, decided for the whole drawing.
-struct Inking {
-    /// Which group each layer belongs to: layers of one group are one coverage.
-    group_of: Vec<usize>,
-    /// The ink of each group.
-    inks: Vec<Colour>,
-    paper: Colour,
-    depth: Depth,
-    mode: Mode,
-}
-
-enum Mode {
-    Grey,
-    GreyAlpha,
-    Rgb,
-    Rgba,
-    /// All colours that can come about, and for each group what it makes of each of those before it.
-    Indexed {
-        palette: Vec<Colour>,
-        steps: Vec<Vec<u8>>,
-    },
-}
-
-impl Inking {
-    fn new(drawing: &Drawing) -> Self {
-        let mut inks: Vec<Colour> = Vec::new();
-        let mut group_of = Vec::with_capacity(drawing.layers.len());
-        for layer in &drawing.layers {
-            // Two translucent layers show where they overlap; opaque ones of one ink do not.
-            let joins = layer.marks() == 0 || (layer.ink.a == 255 && inks.last() == Some(&layer.ink));
-            if !joins || inks.is_empty() {
-                inks.push(layer.ink);
-            }
-            group_of.push(inks.len() - 1);
-        }
-        let paper = drawing.page.paper.unwrap_or(Colour { r: 0, g: 0, b: 0, a: 0 });
-        let depth = drawing.page.depth;
-        let indexed = match depth {
-            Depth::One => index_colours(paper, &inks),
-            Depth::Eight => None,
-        };
-        let grey = inks.iter().all(|ink| ink.is_grey()) && paper.is_grey();
-        let mode = match (indexed, grey, paper.a == 255) {
-            (Some(indexed), _, _) => indexed,
-            (None, true, true) => Mode::Grey,
-            (None, true, false) => Mode::GreyAlpha,
-            (None, false, true) => Mode::Rgb,
-            (None, false, false) => Mode::Rgba,
-        };
-        Self { group_of, inks, paper, depth, mode }
-    }
-
-    fn format(&self) -> Format {
-        match &self.mode {
-            Mode::Grey => Format::Grey,
-            Mode::GreyAlpha => Format::GreyAlpha,
-            Mode::Rgb => Format::Rgb,
-            Mode::Rgba => Format::Rgba,
-            Mode::Indexed { palette, .. } => Format::Indexed(palette.clone()),
-        }
-    }
-
-    /// A pixel of bare paper.
-    fn blank(&self) -> Vec<u8> {
-        let Colour { r, g, b, a } = self.paper;
-        match self.mode {
-            Mode::Grey => vec![r],
-            Mode::GreyAlpha => vec![r, a],
-            Mode::Rgb => vec![r, g, b],
-            Mode::Rgba => vec![r, g, b, a],
-            Mode::Indexed { .. } => vec![0],
-        }
-    }
-
-    /// Lays the ink of a group on pixels of a row.
-    fn lay(&self, group: usize, coverage: &[u8], pixels: &mut [u8]) {
-        let ink = self.inks[group];
-        let weigh = |covered: u8| match self.depth {
-            Depth::Eight => u32::from(covered) * u32::from(ink.a),
-            Depth::One if covered >= HALF => 255 * u32::from(ink.a),
-            Depth::One => 0,
-        };
-        match &self.mode {
-            Mode::Grey => {
-                for (&covered, pixel) in coverage.iter().zip(pixels) {
-                    if covered > 0 {
-                        *pixel = mix(*pixel, ink.r, weigh(covered));
-                    }
-                }
-            }
-            Mode::Rgb => {
-                for (&covered, pixel) in coverage.iter().zip(pixels.chunks_exact_mut(3)) {
-                    if covered > 0 {
-                        let weight = weigh(covered);
-                        for (value, ink) in pixel.iter_mut().zip([ink.r, ink.g, ink.b]) {
-                            *value = mix(*value, ink, weight);
-                        }
-                    }
-                }
-            }
-            Mode::GreyAlpha => {
-                for (&covered, pixel) in coverage.iter().zip(pixels.chunks_exact_mut(2)) {
-                    if covered > 0 {
-                        over(pixel, &[ink.r], weigh(covered));
-                    }
-                }
-            }
-            Mode::Rgba => {
-                for (&covered, pixel) in coverage.iter().zip(pixels.chunks_exact_mut(4)) {
-                    if covered > 0 {
-                        over(pixel, &[ink.r, ink.g, ink.b], weigh(covered));
-                    }
-                }
-            }
-            Mode::Indexed { steps, .. } => {
-                for (&covered, pixel) in coverage.iter().zip(pixels) {
-                    if covered >= HALF {
-                        *pixel = steps[group].get(usize::from(*pixel)).copied().unwrap_or(*pixel);
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// The weight of a fully covered pixel under opaque ink.
-const FULL: u32 = 255 * 255;
-
-/// A value of opaque paper under ink of a weight from 0 to [`FULL`], rounded.
-fn mix(below: u8, ink: u8, weight: u32) -> u8 {
-    ((u32::from(below) * (FULL - weight) + u32::from(ink) * weight + FULL / 2) / FULL) as u8
-}
-
-/// Lays ink of a weight from 0 to [`FULL`] on a pixel whose last value is its alpha, rounded. Values are not
-/// premultiplied.
-fn over(pixel: &mut [u8], ink: &[u8], weight: u32) {
-    let Some((alpha, values)) = pixel.split_last_mut() else { return };
-    let above = u64::from(weight) * 255;
-    let below = u64::from(*alpha) * u64::from(FULL - weight);
-    let both = above + below;
-    if both == 0 {
-        return;
-    }
-    for (value, &ink) in values.iter_mut().zip(ink) {
-        *value = ((u64::from(*value) * below + u64::from(ink) * above + both / 2) / both) as u8;
-    }
-    let full = u64::from(FULL);
-    *alpha = ((both + full / 2) / full) as u8;
-}
-
-/// The colours that inks can make of the paper where each covers a pixel or not, unless they are more than 256.
-fn index_colours(paper: Colour, inks: &[Colour]) -> Option<Mode> {
-    let mut palette = vec![paper];
-    let mut steps = Vec::with_capacity(inks.len());
-    for ink in inks {
-        let mut step = Vec::with_capacity(palette.len());
-        for i in 0..palette.len() {
-            let below = palette[i];
-            let mut pixel = [below.r, below.g, below.b, below.a];
-            over(&mut pixel, &[ink.r, ink.g, ink.b], u32::from(ink.a) * 255);
-            let [r, g, b, a] = pixel;
-            let mixed = Colour { r, g, b, a };
-            let found = palette.iter().position(|&known| known == mixed).unwrap_or_else(|| {
-                palette.push(mixed);
-                palette.len() - 1
-            });
-            step.push(u8::try_from(found).ok()?);
-        }
-        steps.push(step);
-    }
-    Some(Mode::Indexed { palette, steps })
 }
 
 /// Marks that are filled as one path.
@@ -432,5 +231,243 @@ impl Brush {
                 coverage.fill(0);
             }
         }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::super::samples::{layer, lines, on_threads, page, ring, scattered};
+    use super::*;
+    use crate::drawing::{Dots, Strokes};
+    use crate::geom::{Length, Point, Vec2};
+    use crate::scene::{Cap, Depth};
+
+    const RED: Colour = Colour { r: 255, g: 0, b: 0, a: 255 };
+    const NONE: Colour = Colour { r: 0, g: 0, b: 0, a: 0 };
+
+    /// A drawing of one layer with ten pixels a millimetre.
+    fn one(width: f64, height: f64, layer: Layer) -> Drawing {
+        Drawing { page: page(width, height), layers: vec![layer] }
+    }
+
+    fn stroked(ink: Colour, strokes: Strokes) -> Layer {
+        Layer { strokes: vec![strokes], ..layer("one", ink) }
+    }
+
+    /// How much of a grey picture is inked, in pixels.
+    fn inked(pixels: &Pixels) -> f64 {
+        assert_eq!(pixels.format, Format::Grey);
+        pixels.data.iter().map(|&v| f64::from(255 - v) / 255.0).sum()
+    }
+
+    fn grey(v: u8) -> Option<Colour> {
+        Some(Colour { r: v, g: v, b: v, a: 255 })
+    }
+
+    #[test]
+    fn marks_cover_their_area() {
+        let pi = std::f64::consts::PI;
+        let horizontal = [(2.0, 5.0), (8.0, 5.0)];
+        let slanted = [(2.0, 2.0), (8.0, 7.0)];
+        let length = (6.0f64 * 6.0 + 5.0 * 5.0).sqrt();
+        let corner = [(2.0, 2.0), (8.0, 2.0), (8.0, 8.0)];
+        let polyline = |cap, points: &[(f64, f64)]| {
+            let mut strokes = Strokes::new(Length::mm(1.0), cap);
+            strokes.polylines.push(ring(points));
+            stroked(Colour::BLACK, strokes)
+        };
+        let straight = |cap, line| stroked(Colour::BLACK, lines(1.0, cap, &[&[line]]));
+        let mut dot = layer("dot", Colour::BLACK);
+        dot.dots.push(Dots { radius: Length::mm(2.0), centres: ring(&[(5.0, 5.0)]), bundle_ends: vec![1] });
+        let square = |at: f64, side: f64| ring(&[(at, at), (at + side, at), (at + side, at + side), (at, at + side)]);
+        let mut area = layer("area", Colour::BLACK);
+        area.areas.push(vec![square(1.0, 8.0), square(2.0, 3.0)]);
+        let closed = [(2.0, 2.0), (8.0, 2.0), (8.0, 8.0), (2.0, 8.0), (2.0, 2.0)];
+        for (what, layer, wanted) in [
+            ("butt", straight(Cap::Butt, horizontal), 6.0),
+            ("round", straight(Cap::Round, horizontal), 6.0 + pi / 4.0),
+            ("slanted", straight(Cap::Butt, slanted), length),
+            ("slanted, round", straight(Cap::Round, slanted), length + pi / 4.0),
+            ("point, butt", straight(Cap::Butt, [(5.0, 5.0); 2]), 0.0),
+            ("point, round", straight(Cap::Round, [(5.0, 5.0); 2]), pi / 4.0),
+            // At a right turn the bars overlap in a quarter of a pen's square and the join adds a quarter of a disc.
+            ("corner", polyline(Cap::Butt, &corner), 12.0 - 0.25 + pi / 16.0),
+            ("corner, round", polyline(Cap::Round, &corner), 12.0 - 0.25 + pi / 16.0 + pi / 4.0),
+            ("closed", polyline(Cap::Butt, &closed), 24.0 + 4.0 * (pi / 16.0 - 0.25)),
+            ("there and back", polyline(Cap::Butt, &[(2.0, 2.0), (8.0, 2.0), (3.0, 2.0)]), 6.0 + pi / 8.0),
+            ("dot", dot, 4.0 * pi),
+            ("area", area, 64.0 - 9.0),
+        ] {
+            let found = inked(&render(&one(10.0, 10.0, layer))) / 100.0;
+            assert!((found - wanted).abs() < 0.01 * wanted + 1e-9, "{what}: {found} instead of {wanted}");
+        }
+    }
+
+    #[test]
+    fn bends_of_a_curve_leave_no_notches() {
+        // An arc in small steps, as wide as 40 pixels, has the area of its sector.
+        let mut strokes = Strokes::new(Length::mm(4.0), Cap::Butt);
+        let at = |i: i32| {
+            let (sin, cos) = libm::sincos(f64::from(i) / 100.0);
+            Point::new(8.0 * cos, 8.0 * sin) + Vec2::new(1.0, 1.0)
+        };
+        strokes.polylines.push((0..=150).map(at).collect());
+        let found = inked(&render(&one(13.0, 13.0, stroked(Colour::BLACK, strokes)))) / 100.0;
+        assert!((found - 1.5 * 8.0 * 4.0).abs() < 0.2, "{found}");
+    }
+
+    #[test]
+    fn crossing_strokes_of_any_sense_are_one_ink() {
+        let there = [(1.0, 3.0), (9.0, 5.0)];
+        let back = [(9.0, 3.0), (1.0, 5.0)];
+        let strokes = lines(1.0, Cap::Butt, &[&[there, back]]);
+        let pixels = render(&one(10.0, 10.0, stroked(Colour::BLACK, strokes)));
+        assert_eq!(pixels.colour(50, 40), grey(0));
+    }
+
+    #[test]
+    fn tiles_show_no_seam() {
+        // The same marks, moved by what is no multiple of a tile, look the same but for the rounding of edges that are
+        // cut at a tile's border.
+        let drawing = scattered(60.0, 60.0, 400);
+        let moved = |dx: u32, dy: u32| {
+            let by = |p: &mut Point| *p = *p + Vec2::new(f64::from(dx) / 8.0, f64::from(dy) / 8.0);
+            let mut moved = drawing.clone();
+            moved.page = page(600.0, 80.0);
+            moved.page.pixels = [4800, 640];
+            for layer in &mut moved.layers {
+                layer.areas.iter_mut().flatten().flatten().for_each(by);
+                for strokes in &mut layer.strokes {
+                    strokes.lines.iter_mut().flatten().for_each(by);
+                    strokes.polylines.iter_mut().flatten().for_each(by);
+                }
+                layer.dots.iter_mut().flat_map(|dots| &mut dots.centres).for_each(by);
+            }
+            render(&moved)
+        };
+        let still = moved(30, 30);
+        // Across the border of two columns and of several bands.
+        let other = moved(1800, 101);
+        let (mut differing, mut balance) = (0, 0);
+        for y in 0..480 {
+            for x in 0..480 {
+                let (a, b) = (still.colour(x + 30, y + 30).unwrap(), other.colour(x + 1800, y + 101).unwrap());
+                let off = i32::from(a.g) - i32::from(b.g);
+                assert!(off.abs() <= 32, "{a:?} and {b:?} at {x}, {y}");
+                differing += i32::from(off != 0);
+                balance += off;
+            }
+        }
+        assert!(differing < 480, "{differing}");
+        assert!(balance.abs() < differing, "{balance}");
+    }
+
+    #[test]
+    fn formats_follow_the_colours() {
+        let format = |paper, ink, depth| {
+            let mut drawing = one(1.0, 1.0, stroked(ink, lines(0.2, Cap::Butt, &[&[[(0.0, 0.5), (1.0, 0.5)]]])));
+            drawing.page.paper = paper;
+            drawing.page.depth = depth;
+            render(&drawing).format
+        };
+        let white = Some(Colour::WHITE);
+        let glass = Some(Colour { a: 100, ..Colour::WHITE });
+        assert_eq!(format(white, Colour::BLACK, Depth::Eight), Format::Grey);
+        assert_eq!(format(white, RED, Depth::Eight), Format::Rgb);
+        assert_eq!(format(None, Colour::BLACK, Depth::Eight), Format::GreyAlpha);
+        assert_eq!(format(glass, Colour::BLACK, Depth::Eight), Format::GreyAlpha);
+        assert_eq!(format(None, RED, Depth::Eight), Format::Rgba);
+        assert_eq!(format(white, RED, Depth::One), Format::Indexed(vec![Colour::WHITE, RED]));
+        assert_eq!(format(None, RED, Depth::One), Format::Indexed(vec![NONE, RED]));
+    }
+
+    #[test]
+    fn two_tones_are_decided_at_half_coverage() {
+        // Strokes along a row of pixels that cover a fifth and four fifths of it.
+        for (pen, wanted) in [(0.02, Colour::WHITE), (0.08, RED)] {
+            let mut drawing = one(1.0, 1.0, stroked(RED, lines(pen, Cap::Butt, &[&[[(0.0, 0.55), (1.0, 0.55)]]])));
+            drawing.page.depth = Depth::One;
+            let pixels = render(&drawing);
+            assert_eq!(pixels.colour(5, 5), Some(wanted));
+            assert_eq!(pixels.colour(5, 4), Some(Colour::WHITE));
+        }
+    }
+
+    #[test]
+    fn translucent_ink_is_even_within_a_layer_and_adds_between_layers() {
+        let ink = Colour { a: 128, ..Colour::BLACK };
+        let cross = lines(1.0, Cap::Butt, &[&[[(0.0, 5.0), (10.0, 5.0)]], &[[(5.0, 0.0), (5.0, 10.0)]]]);
+        let mut drawing = one(10.0, 10.0, stroked(ink, cross));
+        let pixels = render(&drawing);
+        assert_eq!((pixels.colour(50, 50), pixels.colour(20, 50)), (grey(127), grey(127)));
+        drawing.layers.push(drawing.layers[0].clone());
+        assert_eq!(render(&drawing).colour(50, 50), grey(63));
+        drawing.page.paper = None;
+        let found = render(&drawing).colour(50, 50).unwrap();
+        assert_eq!(found, Colour { a: 192, ..Colour::BLACK });
+        drawing.page.depth = Depth::One;
+        drawing.page.paper = Some(Colour::WHITE);
+        let palette = [255, 127, 63].map(|v| Colour { r: v, g: v, b: v, a: 255 });
+        assert_eq!(render(&drawing).format, Format::Indexed(palette.to_vec()));
+        assert_eq!(render(&drawing).colour(50, 50), grey(63));
+    }
+
+    #[test]
+    fn too_many_colours_for_a_palette_are_still_two_tone() {
+        let bar = |i: u8| {
+            let y = f64::from(i) / 10.0;
+            stroked(
+                Colour { r: i * 24, g: 255 - i * 19, b: i * i * 2, a: 128 },
+                lines(0.06, Cap::Butt, &[&[[(0.0, y), (2.0, y)]]]),
+            )
+        };
+        let mut drawing = Drawing { page: page(2.0, 2.0), layers: (1..=10).map(bar).collect() };
+        drawing.page.depth = Depth::One;
+        let pixels = render(&drawing);
+        assert_eq!(pixels.format, Format::Rgb);
+        drawing.page.depth = Depth::Eight;
+        assert_ne!(render(&drawing), pixels);
+    }
+
+    #[test]
+    fn unusual_numbers_and_sizes_are_survived() {
+        let far = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300, 1e6, -1e6, 0.0];
+        let mut odd = Strokes::new(Length::mm(0.5), Cap::Round);
+        let mut area = Vec::new();
+        for &x in &far {
+            for &y in &far {
+                odd.lines.push([Point::new(x, y), Point::new(5.0, 5.0)]);
+                odd.polylines.push(vec![Point::new(5.0, 5.0), Point::new(x, y), Point::new(y, x)]);
+                area.push(Point::new(x, y));
+            }
+        }
+        odd.bundle_ends.push(odd.lines.len());
+        for pen in [0.5, 0.0, 1e-12, 1e4] {
+            odd.pen = Length::mm(pen);
+            let mut layer = stroked(Colour::BLACK, odd.clone());
+            layer.areas = area.iter().map(|&p| vec![vec![p, Point::new(1.0, 2.0), Point::new(2.0, 1.0)]]).collect();
+            let mut drawing = one(10.0, 10.0, layer);
+            assert_eq!(render(&drawing).data.len(), 100 * 100);
+            for pixels in [[1, 1], [0, 5], [5, 0], [9000, 2], [2, 9000]] {
+                drawing.page.pixels = pixels;
+                assert_eq!(render(&drawing).data.len(), (pixels[0] * pixels[1]) as usize);
+            }
+        }
+    }
+
+    #[test]
+    fn oblong_pixels_stretch_strokes_with_the_page() {
+        let mut drawing =
+            one(10.0, 10.0, stroked(Colour::BLACK, lines(1.0, Cap::Butt, &[&[[(2.0, 5.0), (8.0, 5.0)]]])));
+        drawing.page.pixels = [50, 200];
+        assert!((inked(&render(&drawing)) - 6.0 * 100.0).abs() < 1.0);
+    }
+
+    #[test]
+    fn threads_do_not_matter() {
+        let drawing = scattered(90.0, 90.0, 1000);
+        let [one, four] = on_threads(|| render(&drawing));
+        assert!(one == four);
     }
 }

@@ -13,6 +13,7 @@ use svg::node::element::{Element, Group, Rectangle, SVG};
 
 use super::metadata::{ELEMENT, Metadata, NAMESPACE};
 use super::number;
+use super::path::{write_line, write_polyline, write_ring};
 use crate::drawing::{Drawing, Layer};
 use crate::geom::{Length, Point, ring_area};
 use crate::scene::{Cap, Colour};
@@ -27,10 +28,6 @@ const PIECE: usize = 8_192;
 const PORTION: usize = 16_384;
 /// Portions that are held as text at a time.
 const AT_ONCE: usize = 32;
-/// After so many steps that are given relative to the point before, a point is given absolutely: readers that add up in
-/// single precision drift less than a step of the rounding.
-const ANCHOR: usize = 64;
-
 /// Writes an SVG.
 ///
 /// # Errors
@@ -297,86 +294,239 @@ fn portion_text(pieces: &[Piece<'_>]) -> Vec<u8> {
     text
 }
 
-/// A point in units of the number format.
-fn units(p: Point) -> [i64; 2] {
-    [number::units(p.x), number::units(p.y)]
-}
+#[cfg(test)]
+#[allow(clippy::unwrap_used, clippy::panic)]
+mod tests {
+    use usvg::roxmltree;
 
-/// Writes a command with two numbers to the beginning of `text` and says how many bytes it took.
-#[inline]
-fn put_pair(command: u8, [x, y]: [i64; 2], text: &mut [u8]) -> usize {
-    text[0] = command;
-    let mut at = 1 + number::put(x, &mut text[1..]);
-    // A sign separates as well as a space does.
-    if y >= 0 {
-        text[at] = b' ';
-        at += 1;
+    use super::super::samples::{layer, lines, on_threads, page, ring, scattered};
+    use super::*;
+    use crate::drawing::{Dots, Strokes};
+
+    fn text_of(drawing: &Drawing, metadata: Option<&Metadata>) -> String {
+        let mut out = Vec::new();
+        write(drawing, metadata, &mut out).unwrap();
+        String::from_utf8(out).unwrap()
     }
-    at + number::put(y, &mut text[at..])
-}
 
-/// Writes the step to a point at a distance in units to the beginning of `text` and says how many bytes it took.
-#[inline]
-fn put_step([x, y]: [i64; 2], text: &mut [u8]) -> usize {
-    if y == 0 {
-        text[0] = b'h';
-        1 + number::put(x, &mut text[1..])
-    } else if x == 0 {
-        text[0] = b'v';
-        1 + number::put(y, &mut text[1..])
-    } else {
-        put_pair(b'l', [x, y], text)
+    fn small() -> Drawing {
+        let mut sky = layer("sky", Colour::BLACK);
+        sky.groups.push("back & <ground>".to_owned());
+        let square = [[(1.0, 1.0), (4.0, 1.0)], [(1.0, 2.0), (1.0, 4.5)]];
+        sky.strokes.push(lines(0.25, Cap::Butt, &[&square, &[[(10.0, 10.0), (7.123_44, 9.5)]]]));
+        let mut ground = sky.clone();
+        ground.ink = Colour { r: 255, g: 0, b: 16, a: 128 };
+        ground.strokes = vec![Strokes::new(Length::mm(0.1), Cap::Round)];
+        ground.strokes[0].polylines = vec![ring(&[(0.0, 0.0), (1.0, 0.5), (2.0, 0.0), (0.0, 0.0)])];
+        let mut dots = layer("dots", Colour::BLACK);
+        dots.dots.push(Dots {
+            radius: Length::mm(0.5),
+            centres: ring(&[(3.0, 3.0), (4.0, 4.0)]),
+            bundle_ends: vec![2],
+        });
+        let hole = ring(&[(5.0, 5.0), (6.0, 5.0), (6.0, 6.0)]);
+        dots.areas.push(vec![ring(&[(4.0, 4.0), (8.0, 4.0), (8.0, 8.0), (4.0, 8.0)]), hole]);
+        Drawing { page: page(60.0, 40.5), layers: vec![sky, ground, layer("empty", Colour::BLACK), dots] }
     }
-}
 
-/// Room for a command with two numbers.
-const COMMAND: usize = 2 + 2 * number::LONGEST;
+    #[test]
+    fn small_drawing() {
+        insta::assert_snapshot!(text_of(&small(), None), @r##"
+        <svg height="40.5mm" viewBox="0 0 60 40.5" width="60mm" xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape">
+        <rect fill="#ffffff" height="40.5" id="paper" width="60"/>
+        <g id="layer1" inkscape:groupmode="layer" inkscape:label="back &amp; &lt;ground&gt;">
+        <g id="layer2" inkscape:groupmode="layer" inkscape:label="sky">
+        <g fill="none" stroke="#000000" stroke-linecap="butt" stroke-linejoin="round" stroke-width="0.25">
+        <path d="M1 1h3M1 2v2.5"/>
+        <path d="M10 10l-2.8766-0.5"/>
+        </g>
+        <g opacity="0.502">
+        <g fill="none" stroke="#ff0010" stroke-linecap="round" stroke-linejoin="round" stroke-width="0.1">
+        <path d="M0 0l1 0.5l1-0.5z"/>
+        </g>
+        </g>
+        </g>
+        </g>
+        <g id="layer3" inkscape:groupmode="layer" inkscape:label="dots">
+        <g fill="#000000" fill-rule="evenodd">
+        <path d="M4 4h4v4h-4zM5 5h1v1z"/>
+        </g>
+        <g fill="none" stroke="#000000" stroke-linecap="round" stroke-linejoin="round" stroke-width="1">
+        <path d="M3 3h0M4 4h0"/>
+        </g>
+        </g>
+        </svg>
+        "##);
+    }
 
-fn write_line(&[a, b]: &[Point; 2], text: &mut Vec<u8>) {
-    let (a, b) = (units(a), units(b));
-    let mut line = [0; 2 * COMMAND];
-    let mut at = put_pair(b'M', a, &mut line);
-    at += put_step([b[0] - a[0], b[1] - a[1]], &mut line[at..]);
-    text.extend_from_slice(&line[..at]);
-}
-
-fn write_polyline(points: &[Point], text: &mut Vec<u8>) {
-    match points {
-        [first, open @ .., last] if open.len() > 1 && first == last => {
-            write_points(points[..points.len() - 1].iter().copied(), text);
-            text.push(b'z');
+    #[test]
+    fn other_readers_understand_it() {
+        let drawing = small();
+        let tree = usvg::Tree::from_str(&text_of(&drawing, None), &usvg::Options::default()).unwrap();
+        fn paths(group: &usvg::Group, found: &mut Vec<(f32, bool)>) {
+            for node in group.children() {
+                match node {
+                    usvg::Node::Group(group) => paths(group, found),
+                    usvg::Node::Path(path) => found.push((
+                        path.stroke().map_or(0.0, |stroke| stroke.width().get()),
+                        path.abs_stroke_bounding_box().width() > 0.0,
+                    )),
+                    _ => {}
+                }
+            }
         }
-        points => write_points(points.iter().copied(), text),
+        let mut found = Vec::new();
+        paths(tree.root(), &mut found);
+        // The paper, two tiles, the closed stroke, the area and the dots.
+        assert_eq!(found, [(0.0, true), (0.25, true), (0.25, true), (0.1, true), (0.0, true), (1.0, true)]);
     }
-}
 
-fn write_ring(points: impl Iterator<Item = Point>, text: &mut Vec<u8>) {
-    let before = text.len();
-    write_points(points, text);
-    if text.len() > before {
-        text.push(b'z');
-    }
-}
-
-/// Writes a move to the first point and steps to the others. Each step is taken from where the text has arrived, in
-/// whole units, so that rounding does not add up.
-fn write_points(mut points: impl Iterator<Item = Point>, text: &mut Vec<u8>) {
-    let Some(first) = points.next() else { return };
-    let mut command = [0; COMMAND];
-    let mut here = units(first);
-    let length = put_pair(b'M', here, &mut command);
-    text.extend_from_slice(&command[..length]);
-    let mut steps = 0;
-    for p in points {
-        let there = units(p);
-        let step = [there[0] - here[0], there[1] - here[1]];
-        if step == [0, 0] && steps > 0 {
-            continue;
+    /// What another program's reader and stroker make of a picture.
+    fn drawn_by_others(text: &str, [width, height]: [u32; 2]) -> tiny_skia::Pixmap {
+        fn draw(group: &usvg::Group, scale: tiny_skia::Transform, pixmap: &mut tiny_skia::Pixmap) {
+            for node in group.children() {
+                let path = match node {
+                    usvg::Node::Group(group) => {
+                        draw(group, scale, pixmap);
+                        continue;
+                    }
+                    usvg::Node::Path(path) => path,
+                    _ => panic!("neither group nor path"),
+                };
+                let transform = path.abs_transform().post_concat(scale);
+                let paint_of = |paint: &usvg::Paint| {
+                    let usvg::Paint::Color(colour) = paint else { panic!("no colour") };
+                    let mut paint = tiny_skia::Paint::default();
+                    paint.set_color_rgba8(colour.red, colour.green, colour.blue, 255);
+                    paint
+                };
+                if let Some(fill) = path.fill() {
+                    let rule = match fill.rule() {
+                        usvg::FillRule::NonZero => tiny_skia::FillRule::Winding,
+                        usvg::FillRule::EvenOdd => tiny_skia::FillRule::EvenOdd,
+                    };
+                    pixmap.fill_path(path.data(), &paint_of(fill.paint()), rule, transform, None);
+                }
+                if let Some(stroke) = path.stroke() {
+                    let paint = paint_of(stroke.paint());
+                    pixmap.stroke_path(path.data(), &paint, &stroke.to_tiny_skia(), transform, None);
+                }
+            }
         }
-        steps += 1;
-        let length =
-            if steps % ANCHOR == 0 { put_pair(b'L', there, &mut command) } else { put_step(step, &mut command) };
-        text.extend_from_slice(&command[..length]);
-        here = there;
+        let tree = usvg::Tree::from_str(text, &usvg::Options::default()).unwrap();
+        let scale =
+            tiny_skia::Transform::from_scale(width as f32 / tree.size().width(), height as f32 / tree.size().height());
+        let mut pixmap = tiny_skia::Pixmap::new(width, height).unwrap();
+        draw(tree.root(), scale, &mut pixmap);
+        pixmap
+    }
+
+    #[test]
+    fn other_programs_draw_what_the_raster_shows() {
+        let drawing = scattered(40.0, 30.0, 60);
+        let pixels = crate::back::raster::render(&drawing);
+        let other = drawn_by_others(&text_of(&drawing, None), drawing.page.pixels);
+        let (mut sum, mut far) = (0, 0);
+        for (i, theirs) in other.pixels().iter().enumerate() {
+            let ours = pixels.colour(i % pixels.width, i / pixels.width).unwrap();
+            let off = ours.g.abs_diff(theirs.green());
+            sum += u64::from(off);
+            far += u32::from(off > 100);
+        }
+        // Rounding apart, and the angles at which strokers make arcs.
+        assert!(far <= 5 && sum < other.pixels().len() as u64, "{far} {sum}");
+    }
+
+    #[test]
+    fn paper_may_be_missing_or_translucent() {
+        let mut drawing = small();
+        drawing.page.paper = None;
+        assert!(!text_of(&drawing, None).contains("<rect"));
+        drawing.page.paper = Some(Colour { r: 1, g: 2, b: 3, a: 51 });
+        let wanted = r##"<rect fill="#010203" fill-opacity="0.2" height="40.5" id="paper" width="60"/>"##;
+        assert!(text_of(&drawing, None).contains(wanted));
+    }
+
+    #[test]
+    fn hostile_names_stay_well_formed() {
+        let mut drawing = small();
+        let name = "\"'>]]>\0\u{1b}[31m\u{fffe}\nおはよう &amp; <g id=\"layer1\">";
+        drawing.layers[0].name = name.to_owned();
+        let text = text_of(&drawing, None);
+        let document = roxmltree::Document::parse(&text).unwrap();
+        let inkscape = "http://www.inkscape.org/namespaces/inkscape";
+        let labels: Vec<_> = document.descendants().filter_map(|node| node.attribute((inkscape, "label"))).collect();
+        let wanted = "\"'>]]>\u{fffd}\u{fffd}[31m\u{fffd} おはよう &amp; <g id=\"layer1\">";
+        assert_eq!(labels, ["back & <ground>", wanted, "sky", "dots"]);
+        let mut ids: Vec<_> = document.descendants().filter_map(|node| node.attribute("id")).collect();
+        ids.sort_unstable();
+        assert_eq!(ids, ["layer1", "layer2", "layer3", "layer4", "paper"]);
+    }
+
+    #[test]
+    fn many_tiles_share_paths() {
+        let few = scattered(100.0, 100.0, MANY);
+        let many = scattered(100.0, 100.0, MANY + 1);
+        let count = |text: &str| text.matches("<path").count();
+        assert_eq!(count(&text_of(&few, None)), MANY);
+        let shared = text_of(&many, None);
+        // Each of the five kinds of mark may leave one path that is not full.
+        assert!(count(&shared) <= MANY / TOGETHER + 5, "{}", count(&shared));
+        // No mark is lost: a tile has ten subpaths, a longer stroke or area one.
+        assert_eq!(shared.matches('M').count(), (MANY + 1) / 5 * 32 + 10);
+        assert!(roxmltree::Document::parse(&shared).is_ok());
+    }
+
+    #[test]
+    fn areas_that_share_a_path_run_the_same_way_round() {
+        let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+        let mut back = square;
+        back.reverse();
+        let areas = [vec![ring(&square)], vec![ring(&back)], vec![ring(&square), ring(&back)]];
+        let text = String::from_utf8(portion_text(&area_pieces(&areas, 2))).unwrap();
+        assert_eq!(
+            text,
+            "<path fill-rule=\"nonzero\" d=\"M0 0h1v1h-1zM0 0h1v1h-1z\"/>\n\
+             <path d=\"M0 0h1v1h-1zM0 1h1v-1h-1z\"/>\n"
+        );
+    }
+
+    #[test]
+    fn a_tile_longer_than_a_piece_is_one_path() {
+        let line = [Point::new(0.0, 0.0), Point::new(1.0, 1.0)];
+        let mut strokes = Strokes::new(Length::mm(0.1), Cap::Butt);
+        strokes.lines = vec![line; 2 * PIECE + 1];
+        strokes.bundle_ends = vec![2 * PIECE, 2 * PIECE + 1];
+        let mut one = layer("one", Colour::BLACK);
+        one.strokes.push(strokes);
+        let text = text_of(&Drawing { page: page(10.0, 10.0), layers: vec![one] }, None);
+        assert_eq!((text.matches("<path").count(), text.matches("\"/>\n").count()), (2, 3));
+        assert_eq!(text.matches("M0 0l1 1").count(), 2 * PIECE + 1);
+    }
+
+    #[test]
+    fn long_strokes_do_not_drift() {
+        let points: Vec<Point> =
+            (0..1000).map(|i| Point::new(f64::from(i) * 0.333_333, f64::from(i % 7) / 3.0)).collect();
+        let mut text = Vec::new();
+        write_polyline(&points, &mut text);
+        let tree = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' width='400' height='9'><path stroke='red' d='{}'/></svg>",
+            String::from_utf8(text).unwrap()
+        );
+        let tree = usvg::Tree::from_str(&tree, &usvg::Options::default()).unwrap();
+        let Some(usvg::Node::Path(path)) = tree.root().children().first() else { panic!("no path") };
+        assert_eq!(path.data().points().len(), points.len());
+        for (read, wanted) in path.data().points().iter().zip(&points) {
+            let off = (f64::from(read.x) - wanted.x).abs().max((f64::from(read.y) - wanted.y).abs());
+            assert!(off < 5e-4, "{off}");
+        }
+    }
+
+    #[test]
+    fn threads_do_not_matter() {
+        let drawing = scattered(100.0, 100.0, 30_000);
+        let [one, four] = on_threads(|| text_of(&drawing, None));
+        assert!(one == four);
     }
 }
