@@ -538,7 +538,8 @@ proptest! {
             for &line in bundle {
                 prop_assert!(!is_dashed || line[0].distance(line[1]) < 0.4 + NEAR);
                 for p in edges(line, 0.1).into_iter().flat_map(samples) {
-                    prop_assert!(run.visible.signed_distance(p) > -NEAR);
+                    let distance = run.visible.signed_distance(p);
+                    prop_assert!(distance > -NEAR, "{line:?} reaches {distance} over the region at {p:?}");
                 }
                 if strokes.cap == Cap::Round {
                     prop_assert!(line.iter().all(|&p| run.visible.signed_distance(p) > 0.05 - NEAR));
