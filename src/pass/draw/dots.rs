@@ -36,13 +36,7 @@ pub(super) fn draw(
     scratch: &mut Scratch,
     out: &mut Batch,
 ) -> Result<(), Exceeded> {
-    let lines = spread(job, layer, dotting.hatch, scratch);
-    let along = if job.paint.tone.shape.is_cell() {
-        dotting.along(scratch.whole.along())
-    } else {
-        Lattice::stamp(scratch.whole.along(), dotting.spacing, 0.5, layer.number)
-    };
-    let (lines, along) = shift(lines, along, layer.number, scratch);
+    let (lines, along) = lattices(job, layer, dotting, scratch);
     let radius = dotting.radius;
     let inner = |(low, high): (f64, f64)| (low + radius, high - radius);
     let lines = lines.over(inner(scratch.area.across()));
@@ -73,17 +67,30 @@ pub(super) fn draw(
     Ok(())
 }
 
-/// Moves the dots of further layers so that none falls on one of an earlier layer. The second is moved by half a pitch and
-/// half a spacing: its dots could fall on the first layer's only if the product of two odd numbers were even. In the same
-/// way the fourth keeps off the third, which lies askew to the first two and has no dot in the middle.
-fn shift(lines: Lattice, along: Lattice, layer: u8, scratch: &Scratch) -> (Lattice, Lattice) {
-    let middle = |(low, high): (f64, f64)| (low + high) / 2.0;
-    let (u, v) = (middle(scratch.whole.along()), middle(scratch.whole.across()));
-    match layer {
-        0 | 1 => (lines, along),
-        2 => (lines.moved(0.5), along.moved(0.5)),
-        3 => (lines.through(v).moved(0.5), along.through(u)),
-        _ => (lines.through(v).moved(0.5), along.through(u).moved(0.5)),
+/// Where lines lie, and dots along them, so that no dot falls on one of an earlier layer.
+///
+/// The second layer is moved by half a pitch and half a spacing: its dots could fall on the first layer's only if the
+/// product of two odd numbers were even. In the same way the fourth keeps off the third. These two lie askew to the
+/// first: at the exact pitch, which no diagonal of a tile is a multiple of, and without a dot in the middle.
+fn lattices(job: &Job<'_>, layer: &Layer<'_>, dotting: &Dotting<'_>, scratch: &mut Scratch) -> (Lattice, Lattice) {
+    let lines = spread(job, layer, dotting.hatch, scratch);
+    let (across, along) = (scratch.whole.across(), scratch.whole.along());
+    let is_exact = job.paint.tone.shape.is_cell();
+    let exactly = |range: (f64, f64), step: f64| {
+        let middle = if is_exact { 0.0 } else { (range.0 + range.1) / 2.0 };
+        Lattice::cell(range, middle, step)
+    };
+    let pitch = dotting.hatch.pitch.to_mm();
+    let row = if is_exact || layer.number > 2 {
+        exactly(along, dotting.spacing)
+    } else {
+        Lattice::stamp(along, dotting.spacing, 0.5, 1)
+    };
+    match layer.number {
+        0 | 1 => (lines, row),
+        2 => (lines.moved(0.5), row.moved(0.5)),
+        3 => (exactly(across, pitch).moved(0.5), row),
+        _ => (exactly(across, pitch).moved(0.5), row.moved(0.5)),
     }
 }
 

@@ -47,11 +47,6 @@ impl Lattice {
         Self { origin: self.origin + share * self.step, ..self }
     }
 
-    /// At the same steps, with one of them at `origin`.
-    pub(super) fn through(self, origin: f64) -> Self {
-        Self { origin, ..self }
-    }
-
     /// Continued over another range.
     pub(super) fn over(self, (low, high): (f64, f64)) -> Self {
         let first = ((low - self.origin - TOLERANCE) / self.step).ceil();

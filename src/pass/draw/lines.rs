@@ -129,6 +129,9 @@ fn cross(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
     (low + high) / 2.0
 }
 
+/// Pieces of no more than this many millimetres are rounding, however short strokes may be.
+const CRUMB: f64 = 1e-6;
+
 /// A line of which some ranges are to be drawn.
 pub(super) struct Line<'a> {
     pub(super) frame: &'a Frame,
@@ -161,9 +164,10 @@ impl Line<'_> {
             // Dashes that are meant to be short are not too short.
             shortest = shortest.min(dashes.length());
         }
+        let shortest = (shortest - TOLERANCE).max(CRUMB);
         let start = out.lines.len();
         for &(from, to) in scratch.ranges.as_slice() {
-            if to - from >= shortest - TOLERANCE {
+            if to - from >= shortest {
                 out.lines.push([self.frame.page(from, self.v), self.frame.page(to, self.v)]);
             }
         }

@@ -236,6 +236,7 @@ fn dots_of_four_layers_never_coincide() {
         for (pitch, spacing) in [(0.8, 0.8), (0.8, 0.4), (0.5, 1.0)] {
             let mut paint = single(&canvas, Point::new(4.5, 4.5), 8.0);
             paint.tone.shape = shape.clone();
+            paint.tone.bleed = Some(Length::ZERO);
             paint.tone.fill = vec![fill(dots(pitch, spacing, 0.05))];
             paint.tone.k = Field::constant(4.0);
             let run = Run::new(&paint, &canvas);
@@ -320,7 +321,7 @@ fn clamped_values_are_reported_once() {
 fn edges_decide_which_tiles_stand() {
     let canvas = canvas(8.0, 8.0);
     let mut paint = paint(&canvas);
-    paint.tone.place = Placement::Grid(GridSize::Cells { columns: 4, rows: 4 });
+    paint.tone.place = Placement::Grid(GridSize::Spacing(Length::mm(2.0)));
     paint.tone.bleed = Some(Length::ZERO);
     paint.tone.angle = AngleRule::Fixed(Angle::ZERO);
     paint.tone.edge = Edge::Whole;
@@ -522,22 +523,23 @@ proptest! {
         let drawn = layers(&paint, &canvas, &run);
         let strokes = &drawn[0].strokes[0];
         prop_assert_eq!(strokes.bundle_ends.last(), Some(&strokes.lines.len()));
-        let mut previous = None;
+        let mut next = 0;
         for bundle in strokes.bundles() {
-            let middle = bundle[0][0].lerp(bundle[0][1], 0.5);
-            let tile = run.top(middle).unwrap();
-            prop_assert!(previous < Some(tile), "tiles come in order");
-            previous = Some(tile);
+            // Some tile, after that of the bundle before, holds all of it, and no later one comes over it.
+            let points = || bundle.iter().copied().flat_map(samples);
+            let clearance = |tile: usize, p: Point| {
+                if run.tiles.is_drawn(tile) { convex_clearance(run.tiles.outline(tile), p) } else { f64::NEG_INFINITY }
+            };
+            let is_on_top = |tile: usize| points().all(|p| {
+                clearance(tile, p) > -NEAR && (tile + 1..run.tiles.len()).all(|later| clearance(later, p) < NEAR)
+            });
+            let tile = (next..run.tiles.len()).find(|&tile| is_on_top(tile)).unwrap();
+            next = tile + 1;
             for &line in bundle {
                 prop_assert!(!is_dashed || line[0].distance(line[1]) < 0.4 + NEAR);
-                for p in samples(line) {
-                    prop_assert!(convex_clearance(run.tiles.outline(tile), p) > -NEAR);
-                    for later in (tile + 1..run.tiles.len()).filter(|&i| run.tiles.is_drawn(i)) {
-                        prop_assert!(convex_clearance(run.tiles.outline(later), p) < NEAR);
-                    }
-                }
                 for p in edges(line, 0.1).into_iter().flat_map(samples) {
-                    prop_assert!(run.visible.signed_distance(p) > -NEAR);
+                    let distance = run.visible.signed_distance(p);
+                    prop_assert!(distance > -NEAR, "{line:?} reaches {distance} over the region at {p:?}");
                 }
                 if strokes.cap == Cap::Round {
                     prop_assert!(line.iter().all(|&p| run.visible.signed_distance(p) > 0.05 - NEAR));
@@ -560,7 +562,7 @@ proptest! {
         let drawn = length(&lines(&layers(&paint, &canvas, &run)));
         let inset = paint.tone.fill[0].kind.hatch().unwrap().inset;
         let mut expected = 0.0;
-        const STEP: f64 = 0.004;
+        const STEP: f64 = 0.01;
         for tile in (0..run.tiles.len()).filter(|&i| run.tiles.is_drawn(i)) {
             let (site, along) = (run.sites.points[tile], run.angles.0[tile].unit());
             let outline = run.tiles.outline(tile);
@@ -576,7 +578,7 @@ proptest! {
                 (0..=steps as i32).map(|i| (low + (inset + f64::from(i)) * step).clamp(low + 1e-7, high - 1e-7)).collect()
             };
             for v in places {
-                for u in -1000..1000 {
+                for u in -400..400 {
                     let p = site + along * (f64::from(u) * STEP) + along.turned() * v;
                     if convex_clearance(outline, p) > 0.0 && run.top(p) == Some(tile) {
                         expected += STEP;
