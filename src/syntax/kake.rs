@@ -15,6 +15,8 @@ mod read;
 mod scan;
 mod structure;
 
+#[cfg(test)]
+mod tests;
 
 use crate::diag::{self, Diagnostic};
 use crate::span::{SourceId, Span};

@@ -109,19 +109,20 @@ impl Reader<'_> {
     fn paint_tail<'i>(&mut self, tail: impl Iterator<Item = Pair<'i, Rule>>) -> (Option<Expr>, Option<Expr>) {
         let (mut name, mut seed) = (None, None);
         for part in tail {
-            let span = self.span(&part);
             let is_name = part.as_rule() == Rule::paint_name;
-            let slot = if is_name { &name } else { &seed };
-            if slot.is_some() {
+            let word = self.span(&part).at_start();
+            let Some(value) = parts(part).next() else { continue };
+            let value = self.expression(value);
+            let span = word.to(value.span);
+            let slot = if is_name { &mut name } else { &mut seed };
+            let is_double = slot.replace(value).is_some();
+            if is_double {
                 let what = if is_name { "name" } else { "seed" };
                 self.report(Diagnostic::error(Code::Syntax, span, format!("a paint has one {what}")));
             } else if is_name && seed.is_some() {
                 let message = "the name stands before the seed";
                 self.report(Diagnostic::error(Code::Syntax, span, message).hint("write `as \"…\" seed …`"));
             }
-            let Some(value) = parts(part).next() else { continue };
-            let value = Some(self.expression(value));
-            if is_name { name = value } else { seed = value }
         }
         (name, seed)
     }

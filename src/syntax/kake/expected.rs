@@ -20,6 +20,8 @@ pub(super) struct Place<'t> {
     pub(super) before: Option<Word<'t>>,
     /// The first word of the statement.
     pub(super) first: &'t str,
+    /// What may follow when the statement, property or expression is done.
+    pub(super) next: &'static str,
 }
 
 /// Things that can be expected, in the order in which a message lists them.
@@ -53,6 +55,7 @@ const PHRASES: &[(&[Rule], &str)] = &[
     (&[Rule::word_ink], "`ink`"),
     (&[Rule::word_then], "`then`"),
     (&[Rule::word_else], "`else`"),
+    (&[Rule::word_if], "`if`"),
     (&[Rule::word_as, Rule::paint_name], "`as`"),
     (&[Rule::word_seed, Rule::paint_seed], "`seed`"),
     (&[Rule::comma], "`,`"),
@@ -91,21 +94,31 @@ fn either(phrases: &[&str]) -> String {
 /// What to say where the text does not fit.
 pub(super) fn message(tried: &[Rule], place: &Place, span: Span) -> Diagnostic {
     let tries = |rule: &Rule| tried.contains(rule);
-    // An operator is possible behind every value, and so is no news where something else is due.
-    let is_behind_value = tries(&Rule::infix);
     let mut phrases: Vec<&str> = Vec::new();
     for (rules, phrase) in PHRASES {
-        let is_call = is_behind_value && *phrase == "`(`";
-        if rules.iter().any(tries) && !is_call {
+        if rules.iter().any(tries) {
             phrases.push(phrase);
         }
     }
-    let is_end = tries(&Rule::EOI);
-    let has_tail = phrases.iter().any(|phrase| !matches!(*phrase, "`as`" | "`seed`" | "`in`"));
-    let due = if is_end && !has_tail {
+    if place.first == "import" && phrases.first() == Some(&"a value") {
+        phrases = vec!["a path in quotes"];
+    }
+    // What a value begins with is part of what a value is, and behind a value a call is always possible.
+    if phrases.contains(&"a value") {
+        phrases.retain(|phrase| !matches!(*phrase, "a name" | "`(`" | "`if`"));
+    } else if tries(&Rule::infix) {
+        phrases.retain(|phrase| *phrase != "`(`");
+    }
+    if phrases == ["`:`"] {
+        phrases = vec!["`:` after the property's name"];
+    }
+    let has_tail = phrases.iter().any(|phrase| !matches!(*phrase, "`as`" | "`seed`" | "`in`" | "`,`"));
+    let due = if tries(&Rule::EOI) && !has_tail {
         // Nothing but an operator or an optional part could follow: whatever stands here belongs to nothing.
-        phrases.insert(0, "an operator");
-        phrases.push("the next statement");
+        if tries(&Rule::infix) {
+            phrases.insert(0, "an operator");
+        }
+        phrases.push(place.next);
         either(&phrases)
     } else if phrases.is_empty() {
         "something else".to_owned()
@@ -141,7 +154,10 @@ fn hint(phrases: &[&str], place: &Place) -> Option<String> {
     match text {
         "." if after_number => return Some(format!("digits stand on both sides of a point: `{before}.0`")),
         "." if wants("a value") => return Some("digits stand on both sides of a point: `0.5`".to_owned()),
-        "=" if wants("`:`") => return Some("a property is written `name: value`".to_owned()),
+        "=" if wants("`,`") => return Some("an argument is named with a colon: `name: value`".to_owned()),
+        "=" if phrases.iter().any(|phrase| phrase.starts_with("`:`")) => {
+            return Some("a property is written `name: value`".to_owned());
+        }
         "=" if wants("a value") && before == "=" => return Some("equality is written `==`".to_owned()),
         "=" if wants("an operator") || wants("`then`") || wants("`{`") => {
             return Some("equality is written `==`".to_owned());
@@ -157,6 +173,9 @@ fn hint(phrases: &[&str], place: &Place) -> Option<String> {
         "{" if wants("`then`") => return Some("inside an expression, `if` is written `if a then b else c`".to_owned()),
         _ => {}
     }
+    if let Some(ascii) = half_width(text) {
+        return Some(format!("this is a full-width sign: write `{ascii}`"));
+    }
     if kind == Some(Kind::Word) {
         if super::RESERVED.contains(&text) && (wants("a name") || wants("a parameter")) {
             return Some(format!("`{text}` is a word of the language and cannot be a name"));
@@ -166,4 +185,14 @@ fn hint(phrases: &[&str], place: &Place) -> Option<String> {
         return near_word(text, &wanted);
     }
     None
+}
+
+/// The ASCII form of a full-width sign, as Japanese keyboards give it.
+fn half_width(text: &str) -> Option<char> {
+    let mut letters = text.chars();
+    let letter = letters.next().filter(|letter| ('\u{ff01}'..='\u{ff5e}').contains(letter))?;
+    if letters.next().is_some() {
+        return None;
+    }
+    char::from_u32(u32::from(letter) - 0xfee0)
 }

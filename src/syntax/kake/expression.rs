@@ -14,8 +14,9 @@ use pest::iterators::Pair;
 use std::iter::Peekable;
 use std::vec::IntoIter;
 
-/// How deep a tree may be: a pair of brackets in which operators stand is two deep.
-const HIGHEST: usize = 2 * NESTING;
+/// How deep a tree may be. A pair of brackets with operators of one kind inside makes two levels, the innermost
+/// operators a few more.
+const HIGHEST: usize = 2 * NESTING + 8;
 
 /// How strongly a prefix operator binds.
 const PREFIX: u8 = 6;
@@ -101,7 +102,7 @@ impl Reader<'_> {
     /// A node over others, the deepest of which is `below` deep.
     fn over(&mut self, kind: ExprKind, span: Span, below: usize) -> Node {
         if below >= HIGHEST {
-            self.nested_too_deeply(span);
+            self.nested_too_deeply(span.at_start());
             return Self::error(span);
         }
         Node { expr: Expr { kind, span }, height: below + 1 }
@@ -230,41 +231,40 @@ impl Reader<'_> {
 
     // ----------------------------------------------------------------------------------------- postfixes
 
+    /// An operand with one more call, index or member behind it.
     fn postfix(&mut self, operand: Operand, pair: Pair<'_, Rule>) -> Operand {
         let own = self.span(&pair);
         let Operand { prefixes, span, node: Node { expr: inner, height }, postfixes } = operand;
         let whole = inner.span.to(own);
-        let is_callable = matches!(inner.kind, ExprKind::Name(_) | ExprKind::Member(..) | ExprKind::Error);
-        let is_module = matches!(inner.kind, ExprKind::Name(_) | ExprKind::Error);
+        let is_name = matches!(inner.kind, ExprKind::Name(_));
         let mut refused = None;
+        let is_silent = matches!(inner.kind, ExprKind::Error);
         let (kind, below) = match pair.as_rule() {
             Rule::call => {
-                let (arguments, below) = self.arguments(pair);
-                if !is_callable {
-                    refused = Some(("only a name can be called", None));
+                if !is_name && !matches!(inner.kind, ExprKind::Member(..)) {
+                    refused = Some("only a name can be called");
                 }
+                let (arguments, below) = self.arguments(pair);
                 (ExprKind::Call(Box::new(inner), arguments), below.max(height))
             }
             Rule::index => match parts(pair).next().map(|index| self.node(index)) {
-                Some(index) => {
-                    let below = height.max(index.height);
-                    (ExprKind::Index(Box::new(inner), Box::new(index.expr)), below)
-                }
+                Some(index) => (ExprKind::Index(Box::new(inner), Box::new(index.expr)), height.max(index.height)),
                 None => (ExprKind::Error, 0),
             },
             _ => match pair.into_inner().next().map(|name| self.ident(&name)) {
                 Some(name) => {
-                    if !is_module {
-                        refused = Some(("only a module has members", Some("a member is written `module.name`")));
+                    if !is_name {
+                        refused = Some("a member is written `module.name`");
                     }
                     (ExprKind::Member(Box::new(inner), name), height)
                 }
                 None => (ExprKind::Error, 0),
             },
         };
-        let node = if let Some((message, hint)) = refused {
-            let hint = hint.map(str::to_owned);
-            self.report(Diagnostic::error(Code::Syntax, own, message).maybe_hint(hint));
+        let node = if is_silent {
+            Self::error(whole)
+        } else if let Some(message) = refused {
+            self.report(Diagnostic::error(Code::Syntax, own, message));
             Self::error(whole)
         } else if postfixes >= NESTING {
             self.nested_too_deeply(own);
@@ -360,6 +360,8 @@ impl Reader<'_> {
         let span = self.span(&pair);
         let (mut values, height) = self.members(pair);
         let Some(otherwise) = values.pop() else { return Self::error(span) };
+        // The pair itself goes on to the next word.
+        let span = Span { end: otherwise.span.end, ..span };
         let mut branches = Vec::new();
         let mut values = values.into_iter();
         while let (Some(condition), Some(value)) = (values.next(), values.next()) {
@@ -378,25 +380,24 @@ impl Reader<'_> {
         for arm in inner {
             let mut parts = parts(arm);
             let (Some(pattern), Some(value)) = (parts.next(), parts.next()) else { continue };
-            let place = self.span(&pattern);
             let pattern = self.pattern(pattern);
             let value = self.node(value);
             height = height.max(value.height);
-            if let Some(pattern) = pattern {
-                arms.push(Arm { pattern, span: place, value: value.expr });
+            if let Some((pattern, span)) = pattern {
+                arms.push(Arm { pattern, span, value: value.expr });
             }
         }
         self.over(ExprKind::Match { subject: Box::new(subject.expr), arms }, span, height)
     }
 
     /// A pattern; one that is none has been reported, and its match cannot be trusted to cover its cases.
-    fn pattern(&mut self, pair: Pair<'_, Rule>) -> Option<Pattern> {
-        let span = self.span(&pair);
+    fn pattern(&mut self, pair: Pair<'_, Rule>) -> Option<(Pattern, Span)> {
         let inner = pair.into_inner().next()?;
         if inner.as_rule() == Rule::any {
-            return Some(Pattern::Any);
+            return Some((Pattern::Any, self.span(&inner)));
         }
-        let pattern = match self.expression(inner).kind {
+        let Expr { kind, span } = self.expression(inner);
+        let pattern = match kind {
             ExprKind::Bool(value) => Some(Pattern::Bool(value)),
             ExprKind::Number { value, text, unit: None } => Some(Pattern::Number(value, text)),
             ExprKind::String(parts) => {
@@ -417,7 +418,7 @@ impl Reader<'_> {
             let message = "a pattern is a string, a number without sign or unit, `true`, `false` or `_`";
             self.report(Diagnostic::error(Code::Syntax, span, message));
         }
-        pattern
+        pattern.map(|pattern| (pattern, span))
     }
 
     // -------------------------------------------------------------------------------------------- leaves

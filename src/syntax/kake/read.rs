@@ -32,6 +32,8 @@ pub(super) struct Reader<'t> {
     pub(super) tokens: Vec<Token>,
     roles: Vec<Role>,
     too_deep: Vec<usize>,
+    /// The tokens that are strings without an end.
+    unclosed: Vec<usize>,
     /// Where the faults that are already reported begin.
     faults: Vec<usize>,
     remarks: Remarks,
@@ -69,12 +71,15 @@ impl<'t> Reader<'t> {
             diagnostics.push(fault.diagnostic);
         }
         starts.sort_unstable();
+        let unclosed = tokens.iter().enumerate().filter(|(_, token)| token.kind == Kind::BadText);
+        let unclosed = unclosed.map(|(index, _)| index).collect();
         Self {
             text,
             places,
             tokens,
             roles: structure.roles,
             too_deep: structure.too_deep,
+            unclosed,
             faults: starts,
             remarks,
             base: 0,
@@ -183,7 +188,7 @@ impl<'t> Reader<'t> {
             return false;
         }
         if self.diagnostics.len() == MOST_ERRORS {
-            let message = format!("there are {MOST_ERRORS} mistakes before this: the rest was not read");
+            let message = format!("there are {MOST_ERRORS} mistakes or more: from here on the text was not read");
             self.report(Diagnostic::error(Code::Syntax, self.span_of(at, at), message));
         }
         true
@@ -222,15 +227,16 @@ impl<'t> Reader<'t> {
             let hint = match word {
                 "else" => Some("`else` follows the `}` of an `if { … }`".to_owned()),
                 ";" => Some("statements end by themselves: leave the `;` out".to_owned()),
-                _ if self.kind_of(first) == Some(Kind::Word) => near_word(word, KEYWORDS).or_else(|| {
-                    (self.text_of(first + 1) == "=").then(|| format!("a name is declared with `let {word} = …`"))
-                }),
+                _ if self.text_of(first + 1) == "=" => Some("a name is declared with `let name = …`".to_owned()),
+                _ if self.kind_of(first) == Some(Kind::Word) => near_word(word, KEYWORDS),
                 _ => None,
             };
             self.report(Diagnostic::error(Code::Syntax, self.span_of(first, first), message).maybe_hint(hint));
         }
         let block = self.block(first..stop)?;
-        self.inside(&block);
+        if self.too_deep_in(&(first..block.brace + 1)).is_none() {
+            self.inside(&block);
+        }
         None
     }
 
@@ -244,11 +250,12 @@ impl<'t> Reader<'t> {
     }
 
     /// Runs the grammar over a heading up to its brace, and finds the block. The heading may be wrong and the block
-    /// still be there.
+    /// still be there; one that is nested too deeply is not entered.
     fn head(&mut self, first: usize, stop: usize) -> (Option<Pairs<'t, Rule>>, Option<Block>) {
         let block = self.block(first..stop);
-        let end = block.as_ref().map_or(stop, |block| block.brace + 1);
-        (self.run(Rule::one_head, &(first..end)), block)
+        let heading = first..block.as_ref().map_or(stop, |block| block.brace + 1);
+        let is_too_deep = self.too_deep_in(&heading).is_some();
+        (self.run(Rule::one_head, &heading), block.filter(|_| !is_too_deep))
     }
 
     fn with_properties(&mut self, first: usize, stop: usize) -> Option<(StatementKind, usize)> {
@@ -338,34 +345,46 @@ impl<'t> Reader<'t> {
     /// Runs a rule over the tokens of a range, and reports where it does not fit.
     fn run(&mut self, rule: Rule, range: &Range<usize>) -> Option<Pairs<'t, Rule>> {
         self.is_too_deep = false;
-        if let Some(&token) = self.too_deep.get(self.too_deep.partition_point(|&token| token < range.start))
-            && token < range.end
-        {
+        if let Some(token) = self.too_deep_in(range) {
             self.nested_too_deeply(self.span_of(token, token));
             return None;
         }
         let start = self.tokens.get(range.start).map_or(self.text.len(), |token| token.start);
-        let end = range.end.checked_sub(1).and_then(|last| self.tokens.get(last)).map_or(start, |token| token.end);
+        // The rest of a line behind a quote that is not closed is not text that the structure knows.
+        let unclosed = self.unclosed.partition_point(|&token| token < range.start);
+        let end = match self.unclosed.get(unclosed).filter(|&&token| token < range.end) {
+            Some(&token) => self.tokens.get(token).map_or(start, |token| token.start),
+            None => {
+                let last = range.end.checked_sub(1).and_then(|last| self.tokens.get(last));
+                last.map_or(start, |token| token.end)
+            }
+        };
         self.base = start;
         match Grammar::parse(rule, self.text.get(start..end.max(start)).unwrap_or_default()) {
             Ok(pairs) => Some(pairs),
             Err(error) => {
-                self.misfit(&error, range);
+                self.misfit(rule, &error, range);
                 None
             }
         }
     }
 
+    /// The first token of a range at which nesting passes the limit.
+    fn too_deep_in(&self, range: &Range<usize>) -> Option<usize> {
+        let first = self.too_deep.partition_point(|&token| token < range.start);
+        self.too_deep.get(first).copied().filter(|&token| token < range.end)
+    }
+
     /// Reports nesting beyond the limit, once for a stretch.
     pub(super) fn nested_too_deeply(&mut self, span: Span) {
         if !std::mem::replace(&mut self.is_too_deep, true) {
-            let message = format!("this is nested more than {NESTING} deep");
+            let message = format!("this is nested too deeply: the limit is {NESTING}");
             let hint = "give inner parts names with `let`";
             self.report(Diagnostic::error(Code::Nesting, span, message).hint(hint));
         }
     }
 
-    fn misfit(&mut self, error: &Error<Rule>, range: &Range<usize>) {
+    fn misfit(&mut self, rule: Rule, error: &Error<Rule>, range: &Range<usize>) {
         let offset = match error.location {
             InputLocation::Pos(offset) | InputLocation::Span((offset, _)) => self.base + offset,
         };
@@ -375,7 +394,7 @@ impl<'t> Reader<'t> {
             return;
         };
         let found = self.tokens.partition_point(|token| token.end <= offset);
-        let found = (found < range.end).then_some(found);
+        let mut found = (found < range.end).then_some(found);
         let until = found.and_then(|found| self.tokens.get(found)).map_or(offset, |token| token.start.max(offset));
         // What is wrong with a bracket or string has been said already.
         let known = self.faults.partition_point(|&fault| fault < self.base);
@@ -383,6 +402,13 @@ impl<'t> Reader<'t> {
             return;
         }
         let last = range.end.checked_sub(1).filter(|&last| last >= range.start);
+        // Where a heading lacks a value, the grammar takes the block's brace for that of a record.
+        let mut tried = positives.as_slice();
+        if let (Rule::one_head, None, Some(brace)) = (rule, found, last)
+            && self.text_of(brace) == "{"
+        {
+            (found, tried) = (last, &[Rule::expression]);
+        }
         let place = expected::Place {
             found: found.map(|index| (self.kind_of(index), self.text_of(index))),
             before: found
@@ -391,13 +417,18 @@ impl<'t> Reader<'t> {
                 .filter(|&index| index >= range.start)
                 .map(|index| (self.kind_of(index), self.text_of(index))),
             first: self.text_of(range.start),
+            next: match rule {
+                Rule::one_simple | Rule::one_head => "the next statement",
+                Rule::one_property => "the next property",
+                _ => "the end",
+            },
         };
         let span = match (found, last) {
             (Some(found), _) => self.span_of(found, found),
             (None, Some(last)) => self.span_of(last, last),
             (None, None) => self.places.span(self.text.len(), self.text.len()),
         };
-        let diagnostic = expected::message(positives, &place, span);
+        let diagnostic = expected::message(tried, &place, span);
         self.report(diagnostic);
     }
 }

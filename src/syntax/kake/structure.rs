@@ -204,12 +204,15 @@ impl<'a> Builder<'a> {
     }
 
     fn begin(&mut self, index: usize) {
-        let (indent, keyword) = (self.column(index), keyword_near(self.text_of(index)));
+        let word = self.text_of(index);
+        let (indent, keyword) = (self.column(index), keyword_near(word));
+        let is_alone = keyword != word && self.tokens.get(index + 1).is_none_or(|next| next.leads);
         let Some(frame) = self.frames.last_mut() else { return };
         self.pending.truncate(frame.outer);
         frame.matches = 0;
         frame.is_fresh = false;
-        frame.wants_value = true;
+        // A word that is no keyword stands in a keyword's place, but the next line is not taken for part of it.
+        frame.wants_value = frame.shape == Shape::Properties || !is_alone;
         if frame.shape == Shape::Statements {
             (frame.keyword, frame.has_seed, frame.indent) = (keyword, false, indent);
         }
@@ -261,6 +264,8 @@ impl<'a> Builder<'a> {
         let is_start = token.leads && is_keyword(word) && self.is_followed_as_statement(index, word);
         if is_start {
             self.close_forgotten(index, word);
+        } else if token.leads && self.text_of(index + 1) == ":" {
+            self.close_before_property(index);
         }
         let Some(frame) = self.frames.last() else { return };
         match frame.shape {
@@ -301,7 +306,7 @@ impl<'a> Builder<'a> {
                     self.begin(index);
                 }
             }
-        } else if is_start {
+        } else if is_start && !(word == "canvas" && matches!(frame.keyword, "if" | "for" | "layer")) {
             self.begin(index);
         } else {
             self.word_of_value(index, word);
@@ -364,7 +369,9 @@ impl<'a> Builder<'a> {
             "tone" | "fn" => is_name && matches!(after, "(" | "{" | "="),
             "experiment" => is_name && after == "{",
             "for" => is_name && after == "in",
-            "paint" | "outline" => is_name && !(is_keyword(next) && self.is_followed_plainly(index + 1, next)),
+            "paint" | "outline" => {
+                is_name && after != ":" && !(is_keyword(next) && self.is_followed_plainly(index + 1, next))
+            }
             "layer" | "import" => matches!(kind, Some(Kind::Text | Kind::TextOpen | Kind::BadText)),
             "edition" | "seed" | "canvas" => self.is_followed_plainly(index, keyword),
             _ => false,
@@ -385,7 +392,9 @@ impl<'a> Builder<'a> {
     /// are indented no less than it.
     fn close_forgotten(&mut self, index: usize, keyword: &str) {
         let Some(top) = self.frames.last() else { return };
-        if matches!(keyword, "edition" | "seed" | "canvas") && top.wants_value {
+        // As a property's value, `region` may well stand before `angle: …`.
+        let is_value = top.shape == Shape::Properties && self.text_of(index + 2) == ":";
+        if top.wants_value && (is_value || matches!(keyword, "edition" | "seed" | "canvas")) {
             return;
         }
         if self.frames.first().is_none_or(|whole| whole.shape != Shape::Statements) {
@@ -404,6 +413,21 @@ impl<'a> Builder<'a> {
             }
         }
         self.unclosed(keep, index);
+    }
+
+    /// Closes the brackets of values when a property begins where an operator or comma is due.
+    fn close_before_property(&mut self, index: usize) {
+        if !self.frames.last().is_some_and(|top| top.shape == Shape::Values && !top.wants_value) {
+            return;
+        }
+        // Brackets nested beyond the limit are not searched, so that the work stays linear.
+        let mut searched = self.frames.iter().enumerate().rev().take(NESTING);
+        let around = searched.find(|(_, frame)| frame.shape != Shape::Values);
+        if let Some((properties, frame)) = around
+            && frame.shape == Shape::Properties
+        {
+            self.unclosed(properties + 1, index);
+        }
     }
 
     fn open(&mut self, index: usize, token: &Token) {
@@ -437,6 +461,7 @@ impl<'a> Builder<'a> {
     /// What a brace holds, and whether it is a statement's block.
     fn brace_shape(&mut self, index: usize) -> (Shape, bool) {
         let follows_else = index > 0 && self.text_of(index - 1) == "else";
+        let is_record = self.text_of(index + 1) == "}" || self.text_of(index + 2) == ":";
         let Some(frame) = self.frames.last_mut() else { return (Shape::Values, false) };
         if frame.shape == Shape::Text {
             return (Shape::Values, false);
@@ -453,8 +478,11 @@ impl<'a> Builder<'a> {
         }
         match frame.keyword {
             "canvas" | "tone" | "experiment" => (Shape::Properties, true),
-            "layer" | "for" if !wants_value => (Shape::Statements, true),
-            "if" if !wants_value || (follows_else && self.pending.len() == outer) => (Shape::Statements, true),
+            // Where a value is missing before it, the block is still no record.
+            "layer" | "for" if !wants_value || !is_record => (Shape::Statements, true),
+            "if" if !wants_value || !is_record || (follows_else && self.pending.len() == outer) => {
+                (Shape::Statements, true)
+            }
             _ => (Shape::Properties, false),
         }
     }
@@ -530,7 +558,8 @@ impl<'a> Builder<'a> {
     /// them as one mistake.
     fn unclosed(&mut self, keep: usize, end: usize) {
         let mut forgotten = Vec::new();
-        let mut is_known = false;
+        // Where nesting passes the limit, that is reported and enough.
+        let mut is_known = self.is_too_deep;
         while self.frames.len() > keep.max(1) {
             if let Some(frame) = self.frames.last() {
                 is_known |= frame.has_bad_text;
