@@ -34,23 +34,27 @@ fn delaunay(points: &[Point]) -> Graph {
     let mut edges = Vec::with_capacity(triangulation.num_undirected_edges());
     let mut triangles = Vec::with_capacity(triangulation.num_inner_faces());
     // For every edge whether it merely halves a polygon of sites on one circle.
-    let tied: Vec<bool> = triangulation.undirected_edges().map(|edge| is_tied(edge.as_directed())).collect();
-    for (edge, &tied) in triangulation.undirected_edges().zip(&tied) {
-        if !tied {
+    let mut tied = vec![false; triangulation.num_undirected_edges()];
+    for edge in triangulation.undirected_edges() {
+        if is_tied(edge.as_directed()) {
+            tied[edge.index()] = true;
+        } else {
             edges.push(edge.vertices().map(|vertex| vertex.data().site));
         }
     }
     let mut polygon = Vec::new();
     let mut seen = vec![false; triangulation.num_all_faces()];
     for face in triangulation.inner_faces() {
-        // Polygons are walked along their outline, so from a face that has a part in it.
-        let Some(start) = face.adjacent_edges().into_iter().find(|edge| !tied[edge.as_undirected().index()]) else {
-            continue;
-        };
-        if seen[face.index()] {
+        let sides = face.adjacent_edges();
+        polygon.clear();
+        if sides.iter().all(|edge| !tied[edge.as_undirected().index()]) {
+            polygon.extend(sides.map(|edge| edge.from().data().site));
+            cut(&mut polygon, &mut triangles, &mut edges);
             continue;
         }
-        polygon.clear();
+        // Greater polygons are walked along their outline, so from a face that has a part in it.
+        let start = sides.into_iter().find(|edge| !tied[edge.as_undirected().index()]);
+        let Some(start) = start.filter(|_| !seen[face.index()]) else { continue };
         let mut edge = start;
         loop {
             polygon.push(edge.from().data().site);
