@@ -1,10 +1,37 @@
 //! Kakeami: a compiler for manga's hand-hatched tone.
+//!
+//! A scene, written in a small language or in TOML, describes regions, tile shapes, fills, fields and seeds; what comes
+//! out is clean hatching as SVG or PNG. The same scene gives the same bytes on every run.
+//!
+//! ```
+//! use kakeami::loader::MemoryLoader;
+//!
+//! let text = "canvas { size: (20mm, 20mm) }
+//!             tone plain { place: poisson(radius: 4mm) fill: lines(pitch: 0.8mm) k: 2 }
+//!             paint canvas with plain";
+//! let mut loader = MemoryLoader::default();
+//! loader.files.insert("sheet.kake".to_owned(), text.as_bytes().into());
+//!
+//! let compiled = kakeami::compile("sheet.kake", &loader, &kakeami::Config::default(), &mut ());
+//! let drawing = compiled.drawing.expect("the scene is without fault");
+//! let mut svg = Vec::new();
+//! kakeami::back::svg::write(&drawing, None, &mut svg).expect("memory takes all that is written");
+//! assert!(svg.starts_with(b"<?xml"));
+//! ```
+//!
+//! The pipeline: [`syntax`] reads a [`syntax::ast::Document`], [`lower`] makes a [`scene::Scene`] of it, the passes in
+//! [`pass`] go through [`stage`]'s types to a [`drawing::Drawing`], and [`back`] writes that out. The library touches no
+//! terminal, no clock and, but for a [`loader::Loader`], no file.
 
+pub mod back;
+#[doc(hidden)]
+pub mod cli;
 pub mod diag;
 pub mod drawing;
 pub mod field;
 pub mod geom;
 pub mod loader;
+pub mod lower;
 pub mod pass;
 pub mod random;
 pub mod region;
@@ -12,3 +39,193 @@ pub mod scene;
 pub mod span;
 pub mod stage;
 pub mod syntax;
+
+use diag::{Code, Diagnostic};
+use drawing::Drawing;
+use loader::Loader;
+use lower::{LowerConfig, Lowered};
+use pass::draw::{Assembly, Item, Stages, items};
+use pass::{cut, link, place, turn};
+use scene::{Canvas, Limits, Paint, Scene};
+use stage::{Angles, Graph, Sites, Tiles};
+
+/// What the caller decides about a compilation.
+#[derive(Debug, Clone, Default)]
+pub struct Config {
+    /// Parameters, seed, resolution and limits.
+    pub lower: LowerConfig,
+    /// The paint that is drawn alone, where not all are.
+    pub only: Option<String>,
+}
+
+/// The steps of a compilation, for whoever watches it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Step {
+    /// Reading and lowering the scene.
+    Lower,
+    /// Placing sites.
+    Place,
+    /// Linking neighbours.
+    Link,
+    /// Assigning angles.
+    Turn,
+    /// Cutting tiles.
+    Cut,
+    /// Drawing strokes.
+    Draw,
+}
+
+impl Step {
+    /// Every step in order.
+    pub const ALL: [Self; 6] = [Self::Lower, Self::Place, Self::Link, Self::Turn, Self::Cut, Self::Draw];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lower => "lower",
+            Self::Place => "place",
+            Self::Link => "link",
+            Self::Turn => "turn",
+            Self::Cut => "cut",
+            Self::Draw => "draw",
+        }
+    }
+}
+
+/// Is told of every step of a compilation before it is taken: for progress bars and timings.
+pub trait Observer {
+    /// A step begins, for the paint of this name (empty for the whole scene).
+    fn begin(&mut self, step: Step, paint: &str);
+}
+
+/// Nobody watches.
+impl Observer for () {
+    fn begin(&mut self, _step: Step, _paint: &str) {}
+}
+
+/// What a compilation found.
+#[derive(Debug)]
+pub struct Compiled {
+    /// The picture, unless there are errors.
+    pub drawing: Option<Drawing>,
+    /// The scene with every diagnostic, the passes' included, every text and every file that was read.
+    pub lowered: Lowered,
+}
+
+/// Compiles the scene at `path`, a path from the loader's root, to a drawing.
+///
+/// Mistakes are in `lowered.diagnostics`; the drawing is there only if none of them is an error.
+#[must_use]
+pub fn compile(path: &str, loader: &dyn Loader, config: &Config, observer: &mut dyn Observer) -> Compiled {
+    observer.begin(Step::Lower, "");
+    let mut lowered = lower::lower(path, loader, &config.lower);
+    let Some(scene) = &lowered.scene else { return Compiled { drawing: None, lowered } };
+    let mut diagnostics = Vec::new();
+    let drawing = draw(scene, config, observer, &mut diagnostics);
+    lowered.diagnostics.extend(diagnostics);
+    diag::sort(&mut lowered.diagnostics);
+    Compiled { drawing, lowered }
+}
+
+/// Draws a scene. Limits that are met and warnings go to `diagnostics`.
+fn draw(
+    scene: &Scene,
+    config: &Config,
+    observer: &mut dyn Observer,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Option<Drawing> {
+    let (canvas, limits) = (&scene.canvas, &config.lower.limits);
+    let mut items = items(scene);
+    if let Some(only) = &config.only {
+        let names: Vec<String> = paints(scene).map(|paint| paint.name.clone()).collect();
+        items.retain(|(_, item)| matches!(item, Item::Paint(paint) if paint.name == *only));
+        if items.is_empty() {
+            diagnostics.push(no_such_paint(only, &names));
+            return None;
+        }
+    }
+    if items.is_empty() {
+        let message = "the scene declares tones and such, but paints nothing";
+        let hint = "import it from a scene with a `paint REGION with TONE` statement";
+        diagnostics.push(Diagnostic::without_span(Code::Empty, message).hint(hint));
+        return None;
+    }
+    let mut assembly = Assembly::new(canvas, limits);
+    let mut whole = true;
+    for (setting, item) in &items {
+        let drawn = match item {
+            Item::Outline(outline) => assembly.outline(outline, setting),
+            Item::Paint(paint) => PaintStages::new(paint, canvas, limits, observer, diagnostics).and_then(|stages| {
+                observer.begin(Step::Draw, &paint.name);
+                assembly.paint(paint, setting, &stages.borrow())
+            }),
+        };
+        if let Err(diagnostic) = drawn {
+            diagnostics.push(diagnostic);
+            whole = false;
+        }
+    }
+    whole.then(|| assembly.finish())
+}
+
+/// Every paint of a scene, from the bottom up.
+pub fn paints(scene: &Scene) -> impl Iterator<Item = &Paint> {
+    items(scene).into_iter().filter_map(|(_, item)| match item {
+        Item::Paint(paint) => Some(paint),
+        Item::Outline(_) => None,
+    })
+}
+
+/// Says that a scene has no paint of a name.
+#[must_use]
+pub fn no_such_paint(name: &str, names: &[String]) -> Diagnostic {
+    let hint = diag::did_you_mean(name, names.iter().map(String::as_str)).or_else(|| {
+        let names: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
+        (!names.is_empty()).then(|| format!("its paints are {}", names.join(", ")))
+    });
+    Diagnostic::without_span(Code::UnknownName, format!("the scene has no paint `{name}`")).maybe_hint(hint)
+}
+
+/// What the passes find for one paint.
+#[derive(Debug)]
+pub struct PaintStages {
+    /// Where its tiles lie.
+    pub sites: Sites,
+    /// Which are neighbours.
+    pub graph: Graph,
+    /// How they are turned.
+    pub angles: Angles,
+    /// The tiles themselves.
+    pub tiles: Tiles,
+}
+
+impl PaintStages {
+    /// Runs the passes of one paint up to its tiles.
+    ///
+    /// # Errors
+    /// If the limit of tiles is met.
+    pub fn new(
+        paint: &Paint,
+        canvas: &Canvas,
+        limits: &Limits,
+        observer: &mut dyn Observer,
+        warnings: &mut Vec<Diagnostic>,
+    ) -> Result<Self, Diagnostic> {
+        observer.begin(Step::Place, &paint.name);
+        let sites = place::place(paint, canvas, limits)?;
+        observer.begin(Step::Link, &paint.name);
+        let graph = link::link(&sites, paint.tone.link);
+        observer.begin(Step::Turn, &paint.name);
+        let angles = turn::turn(paint, &sites, &graph);
+        observer.begin(Step::Cut, &paint.name);
+        let tiles = cut::cut(paint, canvas, &sites, &graph, &angles, warnings);
+        Ok(Self { sites, graph, angles, tiles })
+    }
+
+    /// As the drawing pass takes them.
+    #[must_use]
+    pub fn borrow(&self) -> Stages<'_> {
+        Stages { sites: &self.sites, graph: &self.graph, angles: &self.angles, tiles: &self.tiles }
+    }
+}

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 /// Reads the files that a scene names. Paths are relative to the scene's root, with forward slashes, and never lead out
 /// of it: lowering has resolved `..` before it asks.
-pub trait Loader {
+pub trait Loader: Sync {
     /// The bytes of a file.
     ///
     /// # Errors

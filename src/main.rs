@@ -1,1 +1,7 @@
-fn main(){}
+//! The command line `kake`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    kakeami::cli::run(std::env::args_os())
+}

@@ -24,7 +24,7 @@ pub struct Graph {
     offsets: Vec<u32>,
     /// The neighbours of every site, in the order of their indices.
     neighbours: Vec<u32>,
-    /// The triangles behind the links, each with its least index first and then round in one sense, in order; empty
+    /// The triangles behind the links, each with its least index first and then clockwise on the page, in order; empty
     /// where links are not Delaunay's.
     pub triangles: Vec<[u32; 3]>,
 }

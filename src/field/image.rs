@@ -175,14 +175,10 @@ fn of_pixels<const N: usize, T: Stored>(values: &[T], channel: Channel) -> Vec<f
     pixels
         .iter()
         .map(|pixel| {
-            let alpha =
-                if N % 2 == 0 { pixel[N - 1].into() as f32 / T::MOST as f32 } else { 1.0 };
+            let alpha = if N.is_multiple_of(2) { pixel[N - 1].into() as f32 / T::MOST as f32 } else { 1.0 };
             let [red, green, blue] = if N > 2 { [pixel[0], pixel[1], pixel[2]] } else { [pixel[0]; 3] };
             let colour = match channel {
-                Channel::Luminance if N > 2 => {
-                    // The weights add up to one in floating point only in this order.
-                    0.2126 * lit(red) + 0.7152 * lit(green) + 0.0722 * lit(blue)
-                }
+                Channel::Luminance if N > 2 => 0.2126 * lit(red) + 0.7152 * lit(green) + 0.0722 * lit(blue),
                 Channel::Luminance | Channel::Red => lit(red),
                 Channel::Green => lit(green),
                 Channel::Blue => lit(blue),

@@ -119,7 +119,10 @@ impl Tracer<'_> {
         // The first sample of the image is the third of its row, and its middle is half a sample from the edge.
         let x = column as f64 + dx as f64 * share - 1.5;
         let y = row as f64 + dy as f64 * share - 1.5;
-        let size = Vec2::new(self.place.width() / f64::from(self.image.width), self.place.height() / f64::from(self.image.height));
+        let size = Vec2::new(
+            self.place.width() / f64::from(self.image.width),
+            self.place.height() / f64::from(self.image.height),
+        );
         self.place.min + Vec2::new(x * size.x, y * size.y)
     }
 }

@@ -9,6 +9,8 @@ mod evaluate;
 mod image;
 mod mask;
 mod noise;
+#[cfg(test)]
+mod tests;
 
 use std::sync::Arc;
 

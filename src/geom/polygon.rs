@@ -40,7 +40,7 @@ pub fn ring_bounds(ring: &[Point]) -> Rect {
     ring.iter().fold(Rect::EMPTY, |bounds, &p| bounds.including(p))
 }
 
-/// Whether a ring holds a point, by the even-odd rule.
+/// Whether a ring holds a point, by the even-odd rule. Looks at every side; a point on the outline may count either way.
 #[must_use]
 pub fn ring_contains(ring: &[Point], p: Point) -> bool {
     let Some(&last) = ring.last() else { return false };
@@ -56,4 +56,37 @@ pub fn ring_contains(ring: &[Point], p: Point) -> bool {
         a = b;
     }
     inside
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ring(corners: &[[f64; 2]]) -> Vec<Point> {
+        corners.iter().map(|&[x, y]| Point::new(x, y)).collect()
+    }
+
+    #[test]
+    fn areas_are_positive_clockwise_on_the_page() {
+        let square = ring(&[[10.0, 10.0], [14.0, 10.0], [14.0, 13.0], [10.0, 13.0]]);
+        assert_eq!(ring_area(&square), 12.0);
+        let reversed: Vec<Point> = square.iter().rev().copied().collect();
+        assert_eq!(ring_area(&reversed), -12.0);
+        let hole = ring(&[[11.0, 11.0], [11.0, 12.0], [12.0, 12.0], [12.0, 11.0]]);
+        let polygon = Polygon { outer: square, holes: vec![hole] };
+        assert_eq!(polygon.area(), 11.0);
+        assert_eq!(polygon.rings().count(), 2);
+        assert_eq!(ring_area(&[]), 0.0);
+    }
+
+    #[test]
+    fn a_ring_holds_what_it_runs_round() {
+        let arrow = ring(&[[0.0, 0.0], [4.0, 2.0], [0.0, 4.0], [1.0, 2.0]]);
+        let holds = |x: f64, y: f64| ring_contains(&arrow, Point::new(x, y));
+        // Level with a corner, too.
+        assert!(holds(2.0, 2.0) && holds(1.5, 1.5) && holds(0.3, 0.3));
+        assert!(!holds(0.5, 2.0) && !holds(-1.0, 2.0) && !holds(5.0, 2.0) && !holds(0.1, 1.0));
+        assert!(!ring_contains(&[], Point::new(0.0, 0.0)));
+        assert_eq!(ring_bounds(&arrow), Rect::new(Point::new(0.0, 0.0), Point::new(4.0, 4.0)));
+    }
 }

@@ -196,3 +196,187 @@ fn links_along_line(points: &[Point]) -> Option<Vec<[u32; 2]>> {
     order.dedup_by_key(|&mut (_, i)| points[i as usize]);
     Some(order.windows(2).map(|pair| [pair[0].1, pair[1].1]).collect())
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::geom::ring_area;
+    use crate::pass::fixture::{canvas, paint, rect};
+    use crate::pass::place::place;
+    use crate::scene::{AngleRule, GridSize, Limits, Placement};
+
+    fn linked(points: &[Point]) -> Graph {
+        let area = rect(0.0, 0.0, 1.0, 1.0);
+        link(&Sites { points: points.to_vec(), domain: area, extent: area, spacing: 1.0, cells: None }, Link::Delaunay)
+    }
+
+    fn placed(width: f64, height: f64, placement: Placement) -> Vec<Point> {
+        let canvas = canvas(width, height);
+        place(&paint(&canvas, placement, AngleRule::Random), &canvas, &Limits::default()).unwrap().points
+    }
+
+    fn edges(graph: &Graph) -> Vec<[u32; 2]> {
+        graph.edges().collect()
+    }
+
+    fn area(points: &[Point], triangle: &[u32; 3]) -> f64 {
+        ring_area(&triangle.map(|site| points[site as usize]))
+    }
+
+    /// Triangles are in order and of one sense, their sides are the edges, and no site lies in a circumcircle.
+    fn check(points: &[Point], graph: &Graph) {
+        assert!(graph.triangles.is_sorted());
+        let mut sides = BTreeSet::new();
+        for triangle in &graph.triangles {
+            let &[a, b, c] = triangle;
+            assert!(a < b && a < c);
+            assert!(area(points, triangle) > 0.0);
+            sides.extend([[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]));
+            let [a, b, c] = triangle.map(|site| points[site as usize]);
+            for &d in points {
+                let row = |p: Point| (p.x - d.x, p.y - d.y, (p - d).length_squared());
+                let ((ax, ay, az), (bx, by, bz), (cx, cy, cz)) = (row(a), row(b), row(c));
+                let inside = ax * (by * cz - bz * cy) - ay * (bx * cz - bz * cx) + az * (bx * cy - by * cx);
+                assert!(inside < 1e-6, "{inside}");
+            }
+        }
+        assert_eq!(sides.into_iter().collect::<Vec<_>>(), edges(graph));
+    }
+
+    fn points(coordinates: std::ops::Range<i32>, count: usize) -> impl Strategy<Value = Vec<Point>> {
+        let coordinate = move || coordinates.clone().prop_map(|x| f64::from(x) / 8.0);
+        proptest::collection::btree_set((0..64i32, 0..64i32), 0..count)
+            .prop_flat_map(move |set| {
+                let near = proptest::collection::vec((coordinate(), coordinate()), set.len());
+                (Just(set), near)
+            })
+            .prop_map(|(set, near)| {
+                let point = |((x, y), (dx, dy)): ((i32, i32), (f64, f64))| {
+                    Point::new(f64::from(x) + dx * 0.9, f64::from(y) + dy * 0.9)
+                };
+                set.into_iter().zip(near).map(point).collect()
+            })
+            .prop_shuffle()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(128))]
+
+        #[test]
+        fn links_are_delaunay_s(points in points(0..8, 60)) {
+            prop_assume!(links_along_line(&points).is_none());
+            let graph = linked(&points);
+            check(&points, &graph);
+            prop_assert_eq!(edges(&graph).len() + 1, points.len() + graph.triangles.len());
+        }
+
+        #[test]
+        fn ties_on_a_lattice_are_cut_too(points in points(0..1, 300)) {
+            prop_assume!(links_along_line(&points).is_none());
+            check(&points, &linked(&points));
+        }
+
+        #[test]
+        fn links_do_not_depend_on_the_order_of_sites(points in points(0..1000, 60), turn in 0usize..60) {
+            // Sites at odd places leave no ties.
+            let points: Vec<Point> =
+                points.iter().enumerate().map(|(i, p)| Point::new(p.x + 1e-4 * i as f64, p.y)).collect();
+            let turn = turn % points.len().max(1);
+            let mut turned = points.clone();
+            turned.rotate_left(turn);
+            let number = |site: u32| ((site as usize + turn) % points.len()) as u32;
+            let mut there: Vec<[u32; 2]> = linked(&turned)
+                .edges()
+                .map(|edge| edge.map(number))
+                .map(|[a, b]| [a.min(b), a.max(b)])
+                .collect();
+            there.sort_unstable();
+            prop_assert_eq!(there, edges(&linked(&points)));
+        }
+    }
+
+    #[test]
+    fn squares_are_halved_from_their_first_site() {
+        let grid = placed(6.0, 6.0, Placement::Grid(GridSize::Cells { columns: 8, rows: 8 }));
+        let graph = linked(&grid);
+        check(&grid, &graph);
+        assert_eq!((edges(&graph).len(), graph.triangles.len()), (161, 98));
+        // An inner site has its four neighbours in the lattice and those at either end of one diagonal.
+        assert_eq!(graph.neighbours(27), [18, 19, 26, 28, 35, 36]);
+        // The same where coordinates are rounded.
+        let grid = placed(97.3, 61.7, Placement::Grid(GridSize::Cells { columns: 37, rows: 23 }));
+        let graph = linked(&grid);
+        let diagonals = 36 * 22;
+        assert_eq!(edges(&graph).len(), 36 * 23 + 37 * 22 + diagonals);
+        assert!(graph.edges().all(|[a, b]| [1, 37, 38].contains(&(b - a))));
+    }
+
+    #[test]
+    fn a_hexagonal_lattice_has_six_neighbours() {
+        let lattice = placed(30.0, 20.0, Placement::Hex { spacing: crate::geom::Length::mm(1.3) });
+        let graph = linked(&lattice);
+        check(&lattice, &graph);
+        let middle = rect(3.0, 3.0, 27.0, 17.0);
+        let inner: Vec<usize> = (0..lattice.len()).filter(|&i| middle.contains(lattice[i])).collect();
+        assert!(inner.len() > 200);
+        for site in inner {
+            let lengths = graph.neighbours(site).iter().map(|&j| lattice[j as usize].distance(lattice[site]));
+            assert_eq!(lengths.filter(|length| (length - 1.3).abs() < 1e-9).count(), 6);
+            assert_eq!(graph.neighbours(site).len(), 6);
+        }
+    }
+
+    #[test]
+    fn a_regular_polygon_is_a_fan() {
+        let corner = |i: u32| {
+            let way = crate::geom::Angle::degrees(30.0 * f64::from(i * 5 % 12)).unit();
+            Point::new(20.0, 20.0) + way * 7.0
+        };
+        let ring: Vec<Point> = (0..12).map(corner).collect();
+        let graph = linked(&ring);
+        check(&ring, &graph);
+        assert_eq!(graph.neighbours(0), (1..12).collect::<Vec<u32>>());
+    }
+
+    #[test]
+    fn few_sites_and_sites_in_a_row_have_no_triangles() {
+        let row = |xs: &[f64]| -> Vec<Point> { xs.iter().map(|&x| Point::new(x, 3.0 * x)).collect() };
+        let cases: [(&[f64], &[[u32; 2]]); 5] = [
+            (&[], &[]),
+            (&[4.0], &[]),
+            (&[4.0, 1.0], &[[0, 1]]),
+            (&[4.0, 1.0, 8.0, 2.0], &[[0, 2], [0, 3], [1, 3]]),
+            (&[4.0, 4.0, 1.0, 4.0, 1.0], &[[0, 2]]),
+        ];
+        for (xs, links) in cases {
+            let graph = linked(&row(xs));
+            assert_eq!((graph.len(), graph.triangles.len()), (xs.len(), 0));
+            assert_eq!(edges(&graph), links);
+        }
+    }
+
+    #[test]
+    fn a_long_row_is_quick() {
+        let row: Vec<Point> = (0..200_000).map(|i| Point::new(f64::from(i) * 0.1, 5.0)).collect();
+        assert_eq!(linked(&row).edges().count(), 199_999);
+    }
+
+    #[test]
+    fn of_sites_in_one_place_the_first_is_linked() {
+        let corners = [(0.0, 0.0), (5.0, 0.0), (5.0, 0.0), (0.0, 5.0), (-0.0, 0.0), (5.0, 6.0), (1e-50, 0.0)];
+        let graph = linked(&corners.map(|(x, y)| Point::new(x, y)));
+        assert_eq!(edges(&graph), [[0, 1], [0, 3], [1, 3], [1, 5], [3, 5]]);
+        assert_eq!(graph.triangles.len(), 2);
+    }
+
+    #[test]
+    fn far_away_sites_are_linked() {
+        let graph = linked(&[(0.0, 0.0), (1e300, 0.0), (0.0, 1e300), (1e-300, 1e-300)].map(|(x, y)| Point::new(x, y)));
+        assert_eq!(edges(&graph), [[0, 1], [0, 2], [1, 2]]);
+    }
+}

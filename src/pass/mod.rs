@@ -5,6 +5,8 @@
 
 pub mod cut;
 pub mod draw;
+#[cfg(test)]
+pub(crate) mod fixture;
 pub mod link;
 pub mod place;
 pub mod turn;

@@ -52,6 +52,8 @@ pub(super) struct Index {
     rows: usize,
     /// The size of a cell.
     cell: [f64; 2],
+    /// Cells in a millimetre. What this rounds otherwise than division does, the hair's breadth of `cells_along` covers.
+    per_mm: [f64; 2],
     segments: Vec<Segment>,
     /// Where the segments of a cell start in `listed`; one more than there are cells.
     offsets: Vec<u32>,
@@ -83,6 +85,7 @@ impl Index {
             columns,
             rows,
             cell,
+            per_mm: cell.map(f64::recip),
             segments,
             offsets: Vec::new(),
             listed: Vec::new(),
@@ -162,11 +165,11 @@ impl Index {
 
     fn column(&self, x: f64) -> usize {
         // A cast of what is negative or no number gives 0.
-        (((x - self.bounds.min.x) / self.cell[0]) as usize).min(self.columns - 1)
+        (((x - self.bounds.min.x) * self.per_mm[0]) as usize).min(self.columns - 1)
     }
 
     fn row(&self, y: f64) -> usize {
-        (((y - self.bounds.min.y) / self.cell[1]) as usize).min(self.rows - 1)
+        (((y - self.bounds.min.y) * self.per_mm[1]) as usize).min(self.rows - 1)
     }
 
     fn middle(&self, column: usize, row: usize) -> Point {
@@ -266,7 +269,12 @@ impl Index {
             return;
         }
         let mut crossings = Vec::new();
-        let mut is_sure = self.crossings(a, b, (a, b), &mut crossings);
+        let Some(mut is_sure) = self.crossings(a, b, (a, b), &mut crossings) else {
+            if self.contains(a) {
+                out.push((0.0, 1.0));
+            }
+            return;
+        };
         let near = NEAR / length;
         is_sure &= crossings.iter().all(|&(t, _)| t.abs() > near && (t - 1.0).abs() > near);
         crossings.retain(|&(t, _)| 0.0 < t && t < 1.0);
@@ -300,21 +308,22 @@ impl Index {
     }
 
     /// The crossings of the endless line through `a` and `b` with the segments near the piece `along`, in order. Returns
-    /// whether no segment runs along the line.
-    fn crossings(&self, a: Point, b: Point, along: (Point, Point), out: &mut Vec<(f64, u32)>) -> bool {
+    /// whether no segment runs along the line, and nothing where there is no segment near at all.
+    fn crossings(&self, a: Point, b: Point, along: (Point, Point), out: &mut Vec<(f64, u32)>) -> Option<bool> {
         let way = b - a;
         let length_squared = way.length_squared();
         let length = length_squared.sqrt();
         // Which corners count as lying to the left must not depend on the line's sense.
         let sense = if is_downwards(a, b) { 1.0 } else { -1.0 };
-        let mut is_sure = true;
+        let mut is_sure = None;
         self.cells_along(along.0, along.1, |cells| {
             let listed = self.offsets[cells.start] as usize..self.offsets[cells.end] as usize;
             for &i in &self.listed[listed] {
                 let Segment { a: p, b: q } = self.segments[i as usize];
                 let (u, v) = (way.cross(p - a) * sense, way.cross(q - a) * sense);
                 let tilt = (q.x - p.x).abs() + (q.y - p.y);
-                is_sure &= u.abs().max(v.abs()) > (NEAR + ALONG * tilt) * length;
+                let is_apart = u.abs().max(v.abs()) > (NEAR + ALONG * tilt) * length;
+                is_sure = Some(is_sure.unwrap_or(true) && is_apart);
                 if (u >= 0.0) != (v >= 0.0) {
                     let crossing = p.lerp(q, u / (u - v));
                     out.push((way.dot(crossing - a) / length_squared, i));
@@ -344,10 +353,7 @@ fn lines(bounds: &Rect, segments: usize) -> (usize, usize) {
 /// Whether a segment and a closed box share a point.
 fn meets_box(segment: &Segment, area: &Rect) -> bool {
     let Segment { a, b } = *segment;
-    let apart = a.y > area.max.y
-        || b.y < area.min.y
-        || a.x.min(b.x) > area.max.x
-        || a.x.max(b.x) < area.min.x;
+    let apart = a.y > area.max.y || b.y < area.min.y || a.x.min(b.x) > area.max.x || a.x.max(b.x) < area.min.x;
     if apart {
         return false;
     }

@@ -9,6 +9,8 @@ mod curve;
 mod index;
 mod nearest;
 mod overlay;
+pub mod path;
+pub mod svg;
 #[cfg(test)]
 mod tests;
 
@@ -20,6 +22,9 @@ use crate::geom::{Angle, Length, Point, Polygon, Rect, Vec2, ring_bounds};
 use index::Index;
 use nearest::Nearest;
 use overlay::Operation;
+
+pub use curve::Subpath;
+pub use path::{PathError, PathProblem};
 
 /// The farthest that the lines which stand for a curve may lie from it.
 pub const FLATTENING: Length = Length::mm(0.005);
@@ -137,7 +142,7 @@ impl Region {
     #[must_use]
     pub fn inset(&self, distance: Length) -> Self {
         // A distance that is no number changes nothing, like none.
-        if self.is_empty() || !(distance.to_mm().abs() > 0.0) {
+        if self.is_empty() || distance.to_mm().is_nan() || distance == Length::ZERO {
             return self.clone();
         }
         Self::from_resolved(overlay::grow(self.polygons(), -distance))
@@ -170,8 +175,12 @@ impl Region {
 
     /// With every corner moved by an affine map. Rounding may make corners cross, so the result is resolved again.
     fn mapped(&self, map: impl Fn(Point) -> Point) -> Self {
-        let rings: Vec<Vec<Point>> =
-            self.polygons().iter().flat_map(Polygon::rings).map(|ring| ring.iter().map(|&p| map(p)).collect()).collect();
+        let rings: Vec<Vec<Point>> = self
+            .polygons()
+            .iter()
+            .flat_map(Polygon::rings)
+            .map(|ring| ring.iter().map(|&p| map(p)).collect())
+            .collect();
         Self::from_rings(rings, FillRule::NonZero)
     }
 

@@ -19,7 +19,8 @@ pub(super) struct Nearest {
 impl Nearest {
     pub(super) fn new(segments: &[Segment]) -> Self {
         let around = |boxes: &[Rect]| boxes.iter().fold(Rect::EMPTY, |all, b| all.including(b.min).including(b.max));
-        let of_segments = |group: &[Segment]| group.iter().fold(Rect::EMPTY, |all, s| all.including(s.a).including(s.b));
+        let of_segments =
+            |group: &[Segment]| group.iter().fold(Rect::EMPTY, |all, s| all.including(s.a).including(s.b));
         let mut level: Vec<Rect> = segments.chunks(FAN).map(of_segments).collect();
         let mut levels = Vec::new();
         while level.len() > FAN {

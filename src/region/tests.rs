@@ -16,7 +16,8 @@ fn square(x: f64, y: f64, side: f64) -> Region {
 
 /// Whether a point is inside, by looking at every segment; the point must not lie on the outline.
 fn inside_by_counting(region: &Region, at: Point) -> bool {
-    region.polygons().iter().flat_map(Polygon::rings).filter(|ring| crate::geom::ring_contains(ring, at)).count() % 2 == 1
+    region.polygons().iter().flat_map(Polygon::rings).filter(|ring| crate::geom::ring_contains(ring, at)).count() % 2
+        == 1
 }
 
 /// The distance to the outline, by looking at every segment.
@@ -81,6 +82,7 @@ proptest! {
 
     #[test]
     fn pieces_of_lines_lie_inside_and_gaps_outside(region in region(), a in point(), b in point()) {
+        prop_assume!(a != b);
         let mut pieces = Vec::new();
         region.clip_line(a, b, &mut pieces);
         let check = |from: f64, to: f64, expected: bool| {
@@ -246,4 +248,18 @@ fn boxes_are_contained_in_the_middle() {
     assert_eq!(contained(1.0, 1.0, fit), Rect::new(p(15.0, 10.0), p(25.0, 20.0)));
     assert_eq!(contained(4.0, 1.0, fit), Rect::new(p(10.0, 12.5), p(30.0, 17.5)));
     assert_eq!(contained(0.0, 1.0, fit), fit);
+}
+
+#[test]
+fn far_coordinates_are_moved_nearer_and_overflow_nothing() {
+    let huge = Region::polygon(&[p(-1e300, -1e300), p(1e300, -1e300), p(1e300, 1e300), p(-1e300, 1e300)]);
+    assert_eq!(huge.bounds(), Rect::new(p(-1e8, -1e8), p(1e8, 1e8)));
+    assert!(huge.contains(p(3.0, 4.0)) && huge.inset(Length::mm(-1e9)).contains(p(1.5e8, 0.0)));
+    assert!(huge.inset(Length::mm(1e9)).is_empty());
+    let disc = Region::circle(p(0.0, 0.0), Length::mm(1e7));
+    assert!((disc.area() / (std::f64::consts::PI * 1e14) - 1.0).abs() < 1e-6);
+    let mut pieces = Vec::new();
+    disc.clip_line(p(-9e7, 0.0), p(9e7, 0.0), &mut pieces);
+    assert_eq!(pieces.len(), 1);
+    assert!((disc.difference(&square(0.0, 0.0, 1.0)).signed_distance(p(0.5, 0.25)) + 0.25).abs() < 1e-6);
 }

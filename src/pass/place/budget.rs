@@ -109,7 +109,7 @@ fn rounded(value: f64) -> f64 {
 
 /// A number with commas between its thousands.
 fn grouped(value: f64) -> String {
-    if !(value < 1e15) {
+    if value.is_nan() || value >= 1e15 {
         return "more than 1,000,000,000,000,000".to_owned();
     }
     let digits = (value as u64).to_string();

@@ -16,7 +16,7 @@ pub(super) fn place(placement: &Placement, ground: &Ground<'_>, spacing: f64) ->
     let domain = &ground.domain;
     let extent = ground.extent(spacing);
     let centre = domain.centre();
-    let (half, pitch) = (spacing * 0.5, spacing * (libm::sqrt(3.0) * 0.5));
+    let (half, pitch) = (spacing * 0.5, spacing * (3f64.sqrt() * 0.5));
     let columns = (domain.width() / spacing).round().max(1.0);
     let rows = (domain.height() / pitch).round().max(1.0);
     // The last column that is used: an odd one as soon as there is an odd row.

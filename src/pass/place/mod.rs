@@ -122,3 +122,7 @@ fn point_in(rect: &Rect, stream: &mut Stream) -> Point {
     let x = between(rect.min.x, rect.max.x);
     Point::new(x, between(rect.min.y, rect.max.y))
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;

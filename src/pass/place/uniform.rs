@@ -119,7 +119,9 @@ impl<'a> Spread<'a> {
     }
 
     fn at(&self, p: Point) -> f64 {
-        self.weight.at(p).max(0.0).min(GREATEST_WEIGHT)
+        let weight = self.weight.at(p);
+        // This way round, what is no number is no weight either.
+        if weight > 0.0 { weight.min(GREATEST_WEIGHT) } else { 0.0 }
     }
 
     fn cell(&self, number: usize) -> Rect {

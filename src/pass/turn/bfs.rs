@@ -104,3 +104,84 @@ fn farthest(placed: &mut Vec<u32>, candidates: u32) -> u32 {
     }
     best.1
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// The same by definition: every step is tried.
+    fn scanned(graph: &Graph, candidates: u32) -> Vec<u32> {
+        let mut steps: Vec<Option<u32>> = vec![None; graph.len()];
+        let distance = |a: u32, b: u32| a.abs_diff(b).min(candidates - a.abs_diff(b));
+        loop {
+            let root = (0..graph.len()).filter(|&site| steps[site].is_none());
+            let Some(root) = root.max_by_key(|&site| (graph.neighbours(site).len(), graph.len() - site)) else {
+                return steps.into_iter().flatten().collect();
+            };
+            let mut queue = vec![root as u32];
+            let mut next = 0;
+            while let Some(&site) = queue.get(next) {
+                next += 1;
+                let neighbours = graph.neighbours(site as usize);
+                let placed: Vec<u32> = neighbours.iter().filter_map(|&j| steps[j as usize]).collect();
+                let least = |step: u32| placed.iter().map(|&other| distance(step, other)).min().unwrap_or(0);
+                steps[site as usize] = (0..candidates).rev().max_by_key(|&step| least(step));
+                if placed.is_empty() {
+                    steps[site as usize] = Some(if neighbours.is_empty() { lonely(site as usize) } else { 0 });
+                }
+                for &neighbour in neighbours {
+                    if !queue.contains(&neighbour) && steps[neighbour as usize].is_none() {
+                        queue.push(neighbour);
+                    }
+                }
+            }
+        }
+    }
+
+    fn lonely(site: usize) -> u32 {
+        site as u32 % 2
+    }
+
+    fn graphs() -> impl Strategy<Value = Graph> {
+        (1u32..40).prop_flat_map(|sites| {
+            proptest::collection::vec((0..sites, 0..sites), 0..120).prop_map(move |pairs| {
+                let edges: BTreeSet<[u32; 2]> =
+                    pairs.into_iter().filter(|(a, b)| a != b).map(|(a, b)| [a.min(b), a.max(b)]).collect();
+                Graph::new(sites as usize, &edges.into_iter().collect::<Vec<_>>(), Vec::new())
+            })
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn middles_of_gaps_are_what_a_scan_finds(graph in graphs(), candidates in prop_oneof![2u32..12, 2u32..=720]) {
+            prop_assert_eq!(steps(&graph, candidates, lonely), scanned(&graph, candidates));
+        }
+
+        #[test]
+        fn angles_are_whole_steps(graph in graphs(), candidates in 2u32..=720, seed: u64) {
+            let key = Key { seed, name: "paint", purpose: "angle" };
+            for angle in turn(&graph, candidates, &key) {
+                let step = angle.to_radians() / PI * f64::from(candidates);
+                prop_assert!((0.0..PI).contains(&angle.to_radians()));
+                prop_assert!((step - step.round()).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn a_star_s_centre_is_first() {
+        let graph = Graph::new(5, &[[0, 3], [1, 3], [2, 3]], Vec::new());
+        assert_eq!(steps(&graph, 360, |_| 77), [180, 180, 180, 0, 77]);
+    }
+
+    #[test]
+    fn the_greatest_candidate_count_is_no_trouble() {
+        let graph = Graph::new(3, &[[0, 1], [0, 2], [1, 2]], Vec::new());
+        assert_eq!(steps(&graph, u32::MAX, |_| 0), [0, 2_147_483_647, 3_221_225_471]);
+    }
+}

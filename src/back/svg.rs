@@ -1,0 +1,532 @@
+//! SVG: a drawing goes in, a page in millimetres comes out, as a plotter and an editor want it.
+//!
+//! Groups and paints become Inkscape layers, and within them one group holds all marks of one pen. Strokes are strokes
+//! and end where they end: there are no clip paths, masks or white covers. Each tile is one path; from
+//! [`MANY`] paths on [`TOGETHER`] tiles share one, for there are readers that refuse a million elements. Text is made
+//! by several threads in pieces that do not depend on their number.
+
+use std::io::{self, Write};
+
+use rayon::prelude::*;
+use svg::node::Text;
+use svg::node::element::{Element, Group, Rectangle, SVG};
+
+use super::metadata::{ELEMENT, Metadata, NAMESPACE};
+use super::number;
+use super::path::{write_line, write_polyline, write_ring};
+use crate::drawing::{Drawing, Layer};
+use crate::geom::{Length, Point, ring_area};
+use crate::scene::{Cap, Colour};
+
+/// Up to this number of tiles, longer strokes and areas each has a path of its own.
+const MANY: usize = 20_000;
+/// How many share a path where there are more.
+const TOGETHER: usize = 64;
+/// Strokes of a path that one thread writes at a time.
+const PIECE: usize = 8_192;
+/// Points that one thread writes at a time, unless a single piece has more.
+const PORTION: usize = 16_384;
+/// Portions that are held as text at a time.
+const AT_ONCE: usize = 32;
+/// Writes an SVG.
+///
+/// # Errors
+/// What `out` answers.
+pub fn write(drawing: &Drawing, metadata: Option<&Metadata>, out: &mut dyn Write) -> io::Result<()> {
+    write_head(drawing, metadata, out)?;
+    let together = if count_paths(drawing) > MANY { TOGETHER } else { 1 };
+    // The groups that are open, outermost first, and whether each is a paint's: a group may have the same name.
+    let mut open: Vec<(&str, bool)> = Vec::new();
+    let mut ids = 0;
+    for layer in drawing.layers.iter().filter(|layer| layer.marks() > 0) {
+        let groups = layer.groups.iter().map(|name| (name.as_str(), false));
+        let names: Vec<(&str, bool)> = groups.chain([(layer.name.as_str(), true)]).collect();
+        let shared = open.iter().zip(&names).take_while(|(a, b)| a == b).count();
+        close(open.len() - shared, out)?;
+        open.truncate(shared);
+        for &(name, paint) in &names[shared..] {
+            ids += 1;
+            let group = Group::new()
+                .set("inkscape:groupmode", "layer")
+                .set("inkscape:label", xml_text(name))
+                .set("id", format!("layer{ids}"));
+            writeln!(out, "{}", open_tag(&group))?;
+            open.push((name, paint));
+        }
+        // The whole layer is made translucent at once: where its strokes cross they are one ink, as in the raster.
+        let translucent = layer.ink.a < 255;
+        if translucent {
+            writeln!(out, "{}", open_tag(&Group::new().set("opacity", opacity(layer.ink))))?;
+        }
+        write_layer(layer, together, out)?;
+        close(usize::from(translucent), out)?;
+    }
+    close(open.len(), out)?;
+    out.write_all(b"</svg>\n")?;
+    out.flush()
+}
+
+fn write_head(drawing: &Drawing, metadata: Option<&Metadata>, out: &mut dyn Write) -> io::Result<()> {
+    let page = &drawing.page;
+    let (width, height) = (number::text(page.width.to_mm()), number::text(page.height.to_mm()));
+    let root = SVG::new()
+        .set("xmlns:inkscape", "http://www.inkscape.org/namespaces/inkscape")
+        .set("width", format!("{width}mm"))
+        .set("height", format!("{height}mm"))
+        .set("viewBox", format!("0 0 {width} {height}"));
+    writeln!(out, "{}", open_tag(&root))?;
+    if let Some(metadata) = metadata {
+        let name = format!("kakeami:{ELEMENT}");
+        let mut picture = Element::new(name);
+        svg::Node::assign(&mut picture, "xmlns:kakeami", NAMESPACE);
+        svg::Node::append(&mut picture, Text::new(metadata.to_json()?));
+        writeln!(out, "<metadata>{picture}</metadata>")?;
+    }
+    if let Some(paper) = page.paper {
+        let mut rect =
+            Rectangle::new().set("id", "paper").set("width", width).set("height", height).set("fill", paper.hex());
+        if paper.a < 255 {
+            rect = rect.set("fill-opacity", opacity(paper));
+        }
+        writeln!(out, "{rect}")?;
+    }
+    Ok(())
+}
+
+/// The start tag of an element without children.
+fn open_tag(element: &Element) -> String {
+    let mut text = element.to_string();
+    if let Some(start) = text.strip_suffix("/>") {
+        text = format!("{start}>");
+    }
+    text
+}
+
+fn close(groups: usize, out: &mut dyn Write) -> io::Result<()> {
+    for _ in 0..groups {
+        out.write_all(b"</g>\n")?;
+    }
+    Ok(())
+}
+
+/// A name without the characters that XML forbids; the writer escapes the rest.
+fn xml_text(name: &str) -> String {
+    name.chars()
+        .map(|c| match c {
+            '\t' | '\n' | '\r' => ' ',
+            c if c.is_control() => char::REPLACEMENT_CHARACTER,
+            '\u{fffe}' | '\u{ffff}' => char::REPLACEMENT_CHARACTER,
+            c => c,
+        })
+        .collect()
+}
+
+/// A colour's alpha from 0 to 1.
+fn opacity(colour: Colour) -> String {
+    number::text(f64::from(colour.a) / 255.0)
+}
+
+/// How many paths there are with one for each tile, longer stroke and area.
+fn count_paths(drawing: &Drawing) -> usize {
+    let count = |layer: &Layer| {
+        let strokes: usize = layer.strokes.iter().map(|s| s.bundle_ends.len() + s.polylines.len()).sum();
+        let dots: usize = layer.dots.iter().map(|d| d.bundle_ends.len()).sum();
+        layer.areas.len() + strokes + dots
+    };
+    drawing.layers.iter().map(count).sum()
+}
+
+fn write_layer(layer: &Layer, together: usize, out: &mut dyn Write) -> io::Result<()> {
+    if !layer.areas.is_empty() {
+        let group = Group::new().set("fill", layer.ink.hex()).set("fill-rule", "evenodd");
+        write_group(&group, &area_pieces(&layer.areas, together), out)?;
+    }
+    for strokes in &layer.strokes {
+        let mut pieces = bundle_pieces(&strokes.lines, &strokes.bundle_ends, together, Marks::Lines);
+        pieces.extend(strokes.polylines.chunks(together).map(|lines| Piece::whole(Marks::Polylines(lines))));
+        write_group(&stroke_group(layer.ink, strokes.pen, strokes.cap), &pieces, out)?;
+    }
+    for dots in &layer.dots {
+        // A stroke of no length with round ends is a dot to every reader, and to a plotter a touch of the pen.
+        let pieces = bundle_pieces(&dots.centres, &dots.bundle_ends, together, Marks::Dots);
+        write_group(&stroke_group(layer.ink, dots.radius * 2.0, Cap::Round), &pieces, out)?;
+    }
+    Ok(())
+}
+
+fn stroke_group(ink: Colour, pen: Length, cap: Cap) -> Group {
+    // A pen that rounds to nothing would not be drawn at all.
+    let width = number::units_text(number::units(pen.to_mm()).max(1));
+    let cap = match cap {
+        Cap::Butt => "butt",
+        Cap::Round => "round",
+    };
+    Group::new()
+        .set("fill", "none")
+        .set("stroke", ink.hex())
+        .set("stroke-width", width)
+        .set("stroke-linecap", cap)
+        .set("stroke-linejoin", "round")
+}
+
+/// What one thread writes without a break: a path or a part of one.
+struct Piece<'a> {
+    marks: Marks<'a>,
+    /// Whether the path starts with it.
+    starts: bool,
+    /// Whether the path ends with it.
+    ends: bool,
+}
+
+#[derive(Clone, Copy)]
+enum Marks<'a> {
+    Lines(&'a [[Point; 2]]),
+    Polylines(&'a [Vec<Point>]),
+    Dots(&'a [Point]),
+    /// One area of any number of rings.
+    Area(&'a [Vec<Point>]),
+    /// Areas of one ring each.
+    Rings(&'a [Vec<Vec<Point>>]),
+}
+
+impl<'a> Piece<'a> {
+    fn whole(marks: Marks<'a>) -> Self {
+        Self { marks, starts: true, ends: true }
+    }
+
+    /// How many points it has.
+    fn points(&self) -> usize {
+        match self.marks {
+            Marks::Lines(lines) => lines.len() * 2,
+            Marks::Polylines(lines) => lines.iter().map(Vec::len).sum(),
+            Marks::Dots(centres) => centres.len(),
+            Marks::Area(rings) => rings.iter().map(Vec::len).sum(),
+            Marks::Rings(areas) => areas.iter().flatten().map(Vec::len).sum(),
+        }
+    }
+}
+
+/// Paths of `together` bundles each; `ends` says where each bundle ends.
+fn bundle_pieces<'a, T>(
+    items: &'a [T],
+    ends: &[usize],
+    together: usize,
+    marks: fn(&'a [T]) -> Marks<'a>,
+) -> Vec<Piece<'a>> {
+    let mut pieces = Vec::with_capacity(ends.len().div_ceil(together));
+    let mut start = 0;
+    for &end in ends.chunks(together).filter_map(|bundles| bundles.last()) {
+        let path = items.get(start..end).unwrap_or_default();
+        let last = path.len().div_ceil(PIECE).saturating_sub(1);
+        pieces.extend(path.chunks(PIECE).enumerate().map(|(i, part)| Piece {
+            marks: marks(part),
+            starts: i == 0,
+            ends: i == last,
+        }));
+        start = end;
+    }
+    pieces
+}
+
+/// A path for each area; where there are many, simple ones that follow each other share one.
+fn area_pieces(areas: &[Vec<Vec<Point>>], together: usize) -> Vec<Piece<'_>> {
+    let is_simple = |area: &Vec<Vec<Point>>| together > 1 && area.len() == 1;
+    areas
+        .chunk_by(|a, b| is_simple(a) && is_simple(b))
+        .flat_map(|run| run.chunks(together))
+        .map(|run| match run {
+            [area] => Piece::whole(Marks::Area(area)),
+            areas => Piece::whole(Marks::Rings(areas)),
+        })
+        .collect()
+}
+
+/// Writes the paths of one pen, the text of several portions being made at a time.
+fn write_group(group: &Group, pieces: &[Piece<'_>], out: &mut dyn Write) -> io::Result<()> {
+    if pieces.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "{}", open_tag(group))?;
+    let mut portions = Vec::new();
+    let (mut start, mut points) = (0, 0);
+    for (i, piece) in pieces.iter().enumerate() {
+        points += piece.points();
+        if points >= PORTION {
+            portions.push(&pieces[start..=i]);
+            (start, points) = (i + 1, 0);
+        }
+    }
+    portions.push(&pieces[start..]);
+    for several in portions.chunks(AT_ONCE) {
+        let texts: Vec<Vec<u8>> = several.par_iter().map(|pieces| portion_text(pieces)).collect();
+        for text in texts {
+            out.write_all(&text)?;
+        }
+    }
+    close(1, out)
+}
+
+fn portion_text(pieces: &[Piece<'_>]) -> Vec<u8> {
+    let mut text = Vec::with_capacity(pieces.iter().map(Piece::points).sum::<usize>() * 16 + pieces.len() * 16);
+    for piece in pieces {
+        if piece.starts {
+            // Rings of several areas keep their inside where they overlap: they run the same way round.
+            let several = matches!(piece.marks, Marks::Rings(_));
+            text.extend_from_slice(if several { b"<path fill-rule=\"nonzero\" d=\"" } else { b"<path d=\"" });
+        }
+        match piece.marks {
+            Marks::Lines(lines) => lines.iter().for_each(|line| write_line(line, &mut text)),
+            Marks::Polylines(lines) => lines.iter().for_each(|line| write_polyline(line, &mut text)),
+            Marks::Dots(centres) => centres.iter().for_each(|&centre| write_line(&[centre, centre], &mut text)),
+            Marks::Area(rings) => rings.iter().for_each(|ring| write_ring(ring.iter().copied(), &mut text)),
+            Marks::Rings(areas) => areas.iter().flatten().for_each(|ring| {
+                if ring_area(ring) < 0.0 {
+                    write_ring(ring.iter().rev().copied(), &mut text);
+                } else {
+                    write_ring(ring.iter().copied(), &mut text);
+                }
+            }),
+        }
+        if piece.ends {
+            text.extend_from_slice(b"\"/>\n");
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, clippy::panic)]
+mod tests {
+    use usvg::roxmltree;
+
+    use super::super::samples::{layer, lines, on_threads, page, ring, scattered};
+    use super::*;
+    use crate::drawing::{Dots, Strokes};
+
+    fn text_of(drawing: &Drawing, metadata: Option<&Metadata>) -> String {
+        let mut out = Vec::new();
+        write(drawing, metadata, &mut out).unwrap();
+        String::from_utf8(out).unwrap()
+    }
+
+    fn small() -> Drawing {
+        let mut sky = layer("sky", Colour::BLACK);
+        sky.groups.push("back & <ground>".to_owned());
+        let square = [[(1.0, 1.0), (4.0, 1.0)], [(1.0, 2.0), (1.0, 4.5)]];
+        sky.strokes.push(lines(0.25, Cap::Butt, &[&square, &[[(10.0, 10.0), (7.123_44, 9.5)]]]));
+        let mut ground = sky.clone();
+        ground.ink = Colour { r: 255, g: 0, b: 16, a: 128 };
+        ground.strokes = vec![Strokes::new(Length::mm(0.1), Cap::Round)];
+        ground.strokes[0].polylines = vec![ring(&[(0.0, 0.0), (1.0, 0.5), (2.0, 0.0), (0.0, 0.0)])];
+        let mut dots = layer("dots", Colour::BLACK);
+        dots.dots.push(Dots {
+            radius: Length::mm(0.5),
+            centres: ring(&[(3.0, 3.0), (4.0, 4.0)]),
+            bundle_ends: vec![2],
+        });
+        let hole = ring(&[(5.0, 5.0), (6.0, 5.0), (6.0, 6.0)]);
+        dots.areas.push(vec![ring(&[(4.0, 4.0), (8.0, 4.0), (8.0, 8.0), (4.0, 8.0)]), hole]);
+        Drawing { page: page(60.0, 40.5), layers: vec![sky, ground, layer("empty", Colour::BLACK), dots] }
+    }
+
+    #[test]
+    fn small_drawing() {
+        insta::assert_snapshot!(text_of(&small(), None), @r##"
+        <svg height="40.5mm" viewBox="0 0 60 40.5" width="60mm" xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape">
+        <rect fill="#ffffff" height="40.5" id="paper" width="60"/>
+        <g id="layer1" inkscape:groupmode="layer" inkscape:label="back &amp; &lt;ground&gt;">
+        <g id="layer2" inkscape:groupmode="layer" inkscape:label="sky">
+        <g fill="none" stroke="#000000" stroke-linecap="butt" stroke-linejoin="round" stroke-width="0.25">
+        <path d="M1 1h3M1 2v2.5"/>
+        <path d="M10 10l-2.8766-0.5"/>
+        </g>
+        <g opacity="0.502">
+        <g fill="none" stroke="#ff0010" stroke-linecap="round" stroke-linejoin="round" stroke-width="0.1">
+        <path d="M0 0l1 0.5l1-0.5z"/>
+        </g>
+        </g>
+        </g>
+        </g>
+        <g id="layer3" inkscape:groupmode="layer" inkscape:label="dots">
+        <g fill="#000000" fill-rule="evenodd">
+        <path d="M4 4h4v4h-4zM5 5h1v1z"/>
+        </g>
+        <g fill="none" stroke="#000000" stroke-linecap="round" stroke-linejoin="round" stroke-width="1">
+        <path d="M3 3h0M4 4h0"/>
+        </g>
+        </g>
+        </svg>
+        "##);
+    }
+
+    #[test]
+    fn other_readers_understand_it() {
+        let drawing = small();
+        let tree = usvg::Tree::from_str(&text_of(&drawing, None), &usvg::Options::default()).unwrap();
+        fn paths(group: &usvg::Group, found: &mut Vec<(f32, bool)>) {
+            for node in group.children() {
+                match node {
+                    usvg::Node::Group(group) => paths(group, found),
+                    usvg::Node::Path(path) => found.push((
+                        path.stroke().map_or(0.0, |stroke| stroke.width().get()),
+                        path.abs_stroke_bounding_box().width() > 0.0,
+                    )),
+                    _ => {}
+                }
+            }
+        }
+        let mut found = Vec::new();
+        paths(tree.root(), &mut found);
+        // The paper, two tiles, the closed stroke, the area and the dots.
+        assert_eq!(found, [(0.0, true), (0.25, true), (0.25, true), (0.1, true), (0.0, true), (1.0, true)]);
+    }
+
+    /// What another program's reader and stroker make of a picture.
+    fn drawn_by_others(text: &str, [width, height]: [u32; 2]) -> tiny_skia::Pixmap {
+        fn draw(group: &usvg::Group, scale: tiny_skia::Transform, pixmap: &mut tiny_skia::Pixmap) {
+            for node in group.children() {
+                let path = match node {
+                    usvg::Node::Group(group) => {
+                        draw(group, scale, pixmap);
+                        continue;
+                    }
+                    usvg::Node::Path(path) => path,
+                    _ => panic!("neither group nor path"),
+                };
+                let transform = path.abs_transform().post_concat(scale);
+                let paint_of = |paint: &usvg::Paint| {
+                    let usvg::Paint::Color(colour) = paint else { panic!("no colour") };
+                    let mut paint = tiny_skia::Paint::default();
+                    paint.set_color_rgba8(colour.red, colour.green, colour.blue, 255);
+                    paint
+                };
+                if let Some(fill) = path.fill() {
+                    let rule = match fill.rule() {
+                        usvg::FillRule::NonZero => tiny_skia::FillRule::Winding,
+                        usvg::FillRule::EvenOdd => tiny_skia::FillRule::EvenOdd,
+                    };
+                    pixmap.fill_path(path.data(), &paint_of(fill.paint()), rule, transform, None);
+                }
+                if let Some(stroke) = path.stroke() {
+                    let paint = paint_of(stroke.paint());
+                    pixmap.stroke_path(path.data(), &paint, &stroke.to_tiny_skia(), transform, None);
+                }
+            }
+        }
+        let tree = usvg::Tree::from_str(text, &usvg::Options::default()).unwrap();
+        let scale =
+            tiny_skia::Transform::from_scale(width as f32 / tree.size().width(), height as f32 / tree.size().height());
+        let mut pixmap = tiny_skia::Pixmap::new(width, height).unwrap();
+        draw(tree.root(), scale, &mut pixmap);
+        pixmap
+    }
+
+    #[test]
+    fn other_programs_draw_what_the_raster_shows() {
+        let drawing = scattered(40.0, 30.0, 60);
+        let pixels = crate::back::raster::render(&drawing);
+        let other = drawn_by_others(&text_of(&drawing, None), drawing.page.pixels);
+        let (mut sum, mut far) = (0, 0);
+        for (i, theirs) in other.pixels().iter().enumerate() {
+            let ours = pixels.colour(i % pixels.width, i / pixels.width).unwrap();
+            let off = ours.g.abs_diff(theirs.green());
+            sum += u64::from(off);
+            far += u32::from(off > 100);
+        }
+        // Rounding apart, and the angles at which strokers make arcs.
+        assert!(far <= 5 && sum < other.pixels().len() as u64, "{far} {sum}");
+    }
+
+    #[test]
+    fn paper_may_be_missing_or_translucent() {
+        let mut drawing = small();
+        drawing.page.paper = None;
+        assert!(!text_of(&drawing, None).contains("<rect"));
+        drawing.page.paper = Some(Colour { r: 1, g: 2, b: 3, a: 51 });
+        let wanted = r##"<rect fill="#010203" fill-opacity="0.2" height="40.5" id="paper" width="60"/>"##;
+        assert!(text_of(&drawing, None).contains(wanted));
+    }
+
+    #[test]
+    fn hostile_names_stay_well_formed() {
+        let mut drawing = small();
+        let name = "\"'>]]>\0\u{1b}[31m\u{fffe}\nおはよう &amp; <g id=\"layer1\">";
+        drawing.layers[0].name = name.to_owned();
+        let text = text_of(&drawing, None);
+        let document = roxmltree::Document::parse(&text).unwrap();
+        let inkscape = "http://www.inkscape.org/namespaces/inkscape";
+        let labels: Vec<_> = document.descendants().filter_map(|node| node.attribute((inkscape, "label"))).collect();
+        let wanted = "\"'>]]>\u{fffd}\u{fffd}[31m\u{fffd} おはよう &amp; <g id=\"layer1\">";
+        assert_eq!(labels, ["back & <ground>", wanted, "sky", "dots"]);
+        let mut ids: Vec<_> = document.descendants().filter_map(|node| node.attribute("id")).collect();
+        ids.sort_unstable();
+        assert_eq!(ids, ["layer1", "layer2", "layer3", "layer4", "paper"]);
+    }
+
+    #[test]
+    fn many_tiles_share_paths() {
+        let few = scattered(100.0, 100.0, MANY);
+        let many = scattered(100.0, 100.0, MANY + 1);
+        let count = |text: &str| text.matches("<path").count();
+        assert_eq!(count(&text_of(&few, None)), MANY);
+        let shared = text_of(&many, None);
+        // Each of the five kinds of mark may leave one path that is not full.
+        assert!(count(&shared) <= MANY / TOGETHER + 5, "{}", count(&shared));
+        // No mark is lost: a tile has ten subpaths, a longer stroke or area one.
+        assert_eq!(shared.matches('M').count(), (MANY + 1) / 5 * 32 + 10);
+        assert!(roxmltree::Document::parse(&shared).is_ok());
+    }
+
+    #[test]
+    fn areas_that_share_a_path_run_the_same_way_round() {
+        let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+        let mut back = square;
+        back.reverse();
+        let areas = [vec![ring(&square)], vec![ring(&back)], vec![ring(&square), ring(&back)]];
+        let text = String::from_utf8(portion_text(&area_pieces(&areas, 2))).unwrap();
+        assert_eq!(
+            text,
+            "<path fill-rule=\"nonzero\" d=\"M0 0h1v1h-1zM0 0h1v1h-1z\"/>\n\
+             <path d=\"M0 0h1v1h-1zM0 1h1v-1h-1z\"/>\n"
+        );
+    }
+
+    #[test]
+    fn a_tile_longer_than_a_piece_is_one_path() {
+        let line = [Point::new(0.0, 0.0), Point::new(1.0, 1.0)];
+        let mut strokes = Strokes::new(Length::mm(0.1), Cap::Butt);
+        strokes.lines = vec![line; 2 * PIECE + 1];
+        strokes.bundle_ends = vec![2 * PIECE, 2 * PIECE + 1];
+        let mut one = layer("one", Colour::BLACK);
+        one.strokes.push(strokes);
+        let text = text_of(&Drawing { page: page(10.0, 10.0), layers: vec![one] }, None);
+        assert_eq!((text.matches("<path").count(), text.matches("\"/>\n").count()), (2, 3));
+        assert_eq!(text.matches("M0 0l1 1").count(), 2 * PIECE + 1);
+    }
+
+    #[test]
+    fn long_strokes_do_not_drift() {
+        let points: Vec<Point> =
+            (0..1000).map(|i| Point::new(f64::from(i) * 0.333_333, f64::from(i % 7) / 3.0)).collect();
+        let mut text = Vec::new();
+        write_polyline(&points, &mut text);
+        let tree = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' width='400' height='9'><path stroke='red' d='{}'/></svg>",
+            String::from_utf8(text).unwrap()
+        );
+        let tree = usvg::Tree::from_str(&tree, &usvg::Options::default()).unwrap();
+        let Some(usvg::Node::Path(path)) = tree.root().children().first() else { panic!("no path") };
+        assert_eq!(path.data().points().len(), points.len());
+        for (read, wanted) in path.data().points().iter().zip(&points) {
+            let off = (f64::from(read.x) - wanted.x).abs().max((f64::from(read.y) - wanted.y).abs());
+            assert!(off < 5e-4, "{off}");
+        }
+    }
+
+    #[test]
+    fn threads_do_not_matter() {
+        let drawing = scattered(100.0, 100.0, 30_000);
+        let [one, four] = on_threads(|| text_of(&drawing, None));
+        assert!(one == four);
+    }
+}

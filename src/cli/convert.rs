@@ -1,0 +1,89 @@
+//! `kake convert`: .kake to .toml and back.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use crate::diag::{Code, Diagnostic};
+use crate::span::{Sources, Syntax};
+use crate::syntax::{format, kake, toml};
+
+use super::files::{plain, print, write_beside};
+use super::{Ended, report};
+
+#[derive(Debug, Args)]
+pub(super) struct ConvertArgs {
+    /// The scene, .kake or .toml
+    input: PathBuf,
+    /// Where to: a file of the other kind, or - for standard output
+    output: PathBuf,
+}
+
+fn syntax(path: &Path) -> Option<Syntax> {
+    let extension = path.extension()?.to_str()?;
+    match extension.to_ascii_lowercase().as_str() {
+        "kake" => Some(Syntax::Kake),
+        "toml" => Some(Syntax::Toml),
+        _ => None,
+    }
+}
+
+pub(super) fn run(arguments: &ConvertArgs) -> Ended {
+    let stdout = arguments.output == Path::new("-");
+    let Some(from) = syntax(&arguments.input) else {
+        eprintln!("kake: {} is neither .kake nor .toml", arguments.input.display());
+        return Ended::Usage;
+    };
+    let other = match from {
+        Syntax::Kake => Syntax::Toml,
+        Syntax::Toml => Syntax::Kake,
+    };
+    let to = if stdout { Some(other) } else { syntax(&arguments.output) };
+    let Some(to) = to else {
+        eprintln!("kake: {} is neither .kake nor .toml", arguments.output.display());
+        return Ended::Usage;
+    };
+    let bytes = match fs::read(&arguments.input) {
+        Ok(bytes) => bytes,
+        Err(error) => {
+            eprintln!("kake: cannot read {}: {}", arguments.input.display(), plain(&error));
+            return Ended::Io;
+        }
+    };
+    let name = arguments.input.display().to_string();
+    let mut sources = Sources::new();
+    let text = match kake::decode_utf8(&bytes) {
+        Ok(text) => text,
+        Err(offset) => {
+            let message = format!("{name} is not UTF-8: byte {} does not fit", offset + 1);
+            let diagnostic = Diagnostic::without_span(Code::Encoding, message).hint("save the file as UTF-8");
+            return report::diagnostics(&[diagnostic], &sources);
+        }
+    };
+    let source = sources.add(&name, text, from);
+    let (document, diagnostics) = match from {
+        Syntax::Kake => kake::parse(source, text),
+        Syntax::Toml => toml::read(source, text),
+    };
+    if report::diagnostics(&diagnostics, &sources) == Ended::Fault {
+        return Ended::Fault;
+    }
+    let converted = match to {
+        Syntax::Kake => format::format(&document, if from == Syntax::Kake { text } else { "" }),
+        Syntax::Toml => toml::write(&document),
+    };
+    if to == Syntax::Toml && !document.comments.is_empty() {
+        eprintln!("kake: note: {} comments other than `///` are left behind", document.comments.len());
+    }
+    if stdout {
+        return print(converted.as_bytes());
+    }
+    match write_beside(&arguments.output, |out| out.write_all(converted.as_bytes())).and_then(|file| file.keep()) {
+        Ok(()) => Ended::Done,
+        Err(error) => {
+            eprintln!("kake: cannot write {}: {}", arguments.output.display(), plain(&error));
+            Ended::Io
+        }
+    }
+}

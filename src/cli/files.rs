@@ -1,0 +1,204 @@
+//! The file system: scenes with their roots, standard input, and outputs that replace the old file whole or not at all.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::{self, BufWriter, Read, Write};
+use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
+
+use crate::back::metadata::{self, Metadata};
+use crate::loader::{LoadError, Loader};
+
+use super::Ended;
+
+/// The largest file that is read.
+const LARGEST: u64 = 1 << 30;
+
+/// What a scene read from standard input is called.
+const STDIN: &str = "stdin.kake";
+
+/// Reads files below a root folder.
+#[derive(Debug)]
+pub(super) struct FsLoader {
+    root: PathBuf,
+    /// Files that stand in for those of the root: standard input, or what a picture holds.
+    held: BTreeMap<String, Arc<[u8]>>,
+}
+
+impl Loader for FsLoader {
+    fn load(&self, path: &str) -> Result<Arc<[u8]>, LoadError> {
+        if let Some(bytes) = self.held.get(path) {
+            return Ok(Arc::clone(bytes));
+        }
+        let unreadable = |error: io::Error| match error.kind() {
+            io::ErrorKind::NotFound => LoadError::Missing,
+            _ => LoadError::Unreadable(plain(&error)),
+        };
+        // Links are followed first, so that none leads out of the root.
+        let full = self.root.join(path).canonicalize().map_err(unreadable)?;
+        if !full.starts_with(&self.root) {
+            return Err(LoadError::Outside);
+        }
+        let kind = fs::metadata(&full).map_err(unreadable)?;
+        if !kind.is_file() {
+            return Err(LoadError::Unreadable("it is not a file".to_owned()));
+        }
+        if kind.len() > LARGEST {
+            return Err(LoadError::Unreadable("it is larger than 1 GiB".to_owned()));
+        }
+        Ok(fs::read(&full).map_err(unreadable)?.into())
+    }
+}
+
+/// A scene that a command was given.
+#[derive(Debug)]
+pub(super) struct Opened {
+    pub(super) loader: FsLoader,
+    /// The scene's path from the root.
+    pub(super) path: String,
+    /// What a picture holds besides, where the scene is one.
+    pub(super) picture: Option<Metadata>,
+}
+
+/// Why a scene cannot be opened.
+#[derive(Debug)]
+pub(super) enum OpenError {
+    /// In words, with how the command ends.
+    Words(String, Ended),
+    /// A picture that holds no scene.
+    NoScene(String),
+}
+
+/// Finds a scene and the root of what it may read.
+pub(super) fn open(scene: &Path, root: Option<&Path>) -> Result<Opened, OpenError> {
+    let failed = |path: &Path, error: &io::Error| {
+        OpenError::Words(format!("cannot read {}: {}", path.display(), plain(error)), Ended::Io)
+    };
+    if scene == Path::new("-") {
+        let mut text = Vec::new();
+        io::stdin().take(LARGEST).read_to_end(&mut text).map_err(|error| failed(scene, &error))?;
+        let root = root.unwrap_or(Path::new("."));
+        let root = root.canonicalize().map_err(|error| failed(root, &error))?;
+        let held = BTreeMap::from([(STDIN.to_owned(), Arc::from(text))]);
+        return Ok(Opened { loader: FsLoader { root, held }, path: STDIN.to_owned(), picture: None });
+    }
+    let full = scene.canonicalize().map_err(|error| failed(scene, &error))?;
+    let folder = full.parent().unwrap_or(&full).to_owned();
+    let root = match root {
+        Some(root) => root.canonicalize().map_err(|error| failed(root, &error))?,
+        None => folder.ancestors().find(|dir| dir.join("kake.toml").is_file()).unwrap_or(&folder).to_owned(),
+    };
+    let extension = full.extension().unwrap_or_default().to_ascii_lowercase();
+    if extension == "svg" || extension == "png" {
+        let bytes = fs::read(&full).map_err(|error| failed(scene, &error))?;
+        let Some(picture) = metadata::extract(&bytes) else {
+            return Err(OpenError::NoScene(scene.display().to_string()));
+        };
+        let texts = picture.sources.iter().map(|(path, text)| (path.clone(), Arc::from(text.as_bytes())));
+        let files = picture.files.iter().map(|(path, bytes)| (path.clone(), Arc::from(&bytes[..])));
+        let held = texts.chain(files).collect();
+        let path = picture.scene.clone();
+        return Ok(Opened { loader: FsLoader { root, held }, path, picture: Some(picture) });
+    }
+    let Ok(inside) = full.strip_prefix(&root) else {
+        let message = format!("{} does not lie below the root {}", scene.display(), root.display());
+        return Err(OpenError::Words(message, Ended::Usage));
+    };
+    let path = slashed(inside);
+    Ok(Opened { loader: FsLoader { root, held: BTreeMap::new() }, path, picture: None })
+}
+
+/// A relative path with forward slashes.
+fn slashed(path: &Path) -> String {
+    let parts = path.components().filter_map(|part| match part {
+        Component::Normal(part) => Some(part.to_string_lossy()),
+        _ => None,
+    });
+    parts.collect::<Vec<_>>().join("/")
+}
+
+/// An error of the system without its number.
+pub(super) fn plain(error: &io::Error) -> String {
+    let text = error.to_string();
+    text.split_once(" (os error").map_or(text.clone(), |(words, _)| words.to_lowercase())
+}
+
+/// Prints bytes to standard output. A reader that has gone away is no failure.
+pub(super) fn print(bytes: &[u8]) -> Ended {
+    let mut out = io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Ok(()) => Ended::Done,
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ended::Done,
+        Err(error) => {
+            eprintln!("kake: cannot write to standard output: {}", plain(&error));
+            Ended::Io
+        }
+    }
+}
+
+/// A file that is written beside its place and moved there when it is whole.
+pub(super) struct Pending {
+    target: PathBuf,
+    file: Written,
+}
+
+enum Written {
+    /// Beside its place, to be moved there.
+    Beside(tempfile::NamedTempFile),
+    /// Straight to a device or pipe, which cannot be replaced.
+    Straight,
+}
+
+/// Writes a file beside its place; `write` fills it.
+pub(super) fn write_beside(
+    target: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<Pending> {
+    // What a link points to is replaced, not the link.
+    let target = target.canonicalize().unwrap_or_else(|_| target.to_owned());
+    if fs::metadata(&target).is_ok_and(|kind| !kind.is_file() && !kind.is_dir()) {
+        let mut file = BufWriter::with_capacity(BUFFER, fs::OpenOptions::new().write(true).open(&target)?);
+        write(&mut file)?;
+        file.flush()?;
+        return Ok(Pending { target, file: Written::Straight });
+    }
+    if target.is_dir() {
+        return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder"));
+    }
+    let folder = match target.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".kake-").suffix(".part");
+    permissions(&mut builder, &target);
+    let mut file = builder.tempfile_in(folder)?;
+    let mut buffered = BufWriter::with_capacity(BUFFER, file.as_file_mut());
+    write(&mut buffered)?;
+    buffered.flush()?;
+    drop(buffered);
+    Ok(Pending { target, file: Written::Beside(file) })
+}
+
+const BUFFER: usize = 1 << 20;
+
+/// A new file is as readable as any other; one that replaces an old file keeps its permissions.
+#[cfg(unix)]
+fn permissions(builder: &mut tempfile::Builder<'_, '_>, target: &Path) {
+    use std::os::unix::fs::PermissionsExt;
+    let kept = fs::metadata(target).map(|kind| kind.permissions());
+    builder.permissions(kept.unwrap_or_else(|_| fs::Permissions::from_mode(0o666)));
+}
+
+#[cfg(not(unix))]
+fn permissions(_builder: &mut tempfile::Builder<'_, '_>, _target: &Path) {}
+
+impl Pending {
+    /// Moves the file to its place.
+    pub(super) fn keep(self) -> io::Result<()> {
+        match self.file {
+            Written::Beside(file) => file.persist(&self.target).map(|_| ()).map_err(|error| error.error),
+            Written::Straight => Ok(()),
+        }
+    }
+}

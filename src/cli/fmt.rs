@@ -1,0 +1,102 @@
+//! `kake fmt`: scenes in their canonical form.
+
+use std::fs;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use crate::diag::{Code, Diagnostic};
+use crate::span::{Sources, Syntax};
+use crate::syntax::{format, kake};
+
+use super::files::{plain, print, write_beside};
+use super::{Ended, report};
+
+#[derive(Debug, Args)]
+pub(super) struct FmtArgs {
+    /// Scenes in .kake; - reads standard input and prints the result
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    /// Change nothing; name the files that are not in canonical form and fail if there are any
+    #[arg(long)]
+    check: bool,
+}
+
+pub(super) fn run(arguments: &FmtArgs) -> Ended {
+    let mut worst = Ended::Done;
+    for file in &arguments.files {
+        let ended = one(file, arguments.check);
+        worst = match (worst, ended) {
+            (Ended::Done, ended) => ended,
+            (Ended::Fault, Ended::Io | Ended::Usage) => ended,
+            (worst, _) => worst,
+        };
+    }
+    worst
+}
+
+fn one(file: &Path, check: bool) -> Ended {
+    let stdin = file == Path::new("-");
+    if file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
+        eprintln!("kake: {} is TOML; `kake fmt` formats .kake files", file.display());
+        return Ended::Usage;
+    }
+    let read = if stdin {
+        let mut bytes = Vec::new();
+        io::stdin().read_to_end(&mut bytes).map(|_| bytes)
+    } else {
+        fs::read(file)
+    };
+    let bytes = match read {
+        Ok(bytes) => bytes,
+        Err(error) => {
+            eprintln!("kake: cannot read {}: {}", file.display(), plain(&error));
+            return Ended::Io;
+        }
+    };
+    let name = file.display().to_string();
+    let formatted = match formatted(&name, &bytes) {
+        Ok(formatted) => formatted,
+        Err(ended) => return ended,
+    };
+    let unchanged = formatted.as_bytes() == bytes;
+    match (check, stdin) {
+        (true, _) if unchanged => Ended::Done,
+        (true, _) => {
+            let printed = print(format!("{name}\n").as_bytes());
+            if printed == Ended::Done { Ended::Fault } else { printed }
+        }
+        (false, true) => print(formatted.as_bytes()),
+        (false, false) if unchanged => Ended::Done,
+        (false, false) => {
+            let written = write_beside(file, |out| out.write_all(formatted.as_bytes())).and_then(|file| file.keep());
+            match written {
+                Ok(()) => Ended::Done,
+                Err(error) => {
+                    eprintln!("kake: cannot write {name}: {}", plain(&error));
+                    Ended::Io
+                }
+            }
+        }
+    }
+}
+
+/// The canonical form of a scene; a scene with syntax errors has none.
+fn formatted(name: &str, bytes: &[u8]) -> Result<String, Ended> {
+    let mut sources = Sources::new();
+    let text = match kake::decode_utf8(bytes) {
+        Ok(text) => text,
+        Err(offset) => {
+            let message = format!("{name} is not UTF-8: byte {} does not fit", offset + 1);
+            let diagnostic = Diagnostic::without_span(Code::Encoding, message).hint("save the file as UTF-8");
+            return Err(report::diagnostics(&[diagnostic], &sources));
+        }
+    };
+    let source = sources.add(name, text, Syntax::Kake);
+    let (document, diagnostics) = kake::parse(source, text);
+    if report::diagnostics(&diagnostics, &sources) == Ended::Fault {
+        return Err(Ended::Fault);
+    }
+    Ok(format::format(&document, text))
+}

@@ -1,0 +1,69 @@
+//! What a picture says of how it was made, and what a new picture says of it.
+
+use std::collections::BTreeMap;
+
+use clap::ValueEnum;
+
+use crate::back::metadata::Metadata;
+use crate::lower::Lowered;
+use crate::{Compiled, Config};
+
+use super::files::Opened;
+
+/// What goes into a picture besides the drawing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Embed {
+    /// The scene's text with its imports, the seed and the parameters
+    Text,
+    /// Every file that was read too
+    All,
+    /// Nothing
+    None,
+}
+
+/// Sets what a picture was made with, unless the command line says otherwise.
+pub(super) fn take_over(config: &mut Config, opened: &Opened) {
+    let Some(picture) = &opened.picture else { return };
+    for (name, value) in &picture.params {
+        if !config.lower.sets.iter().any(|(set, _)| set == name) {
+            config.lower.sets.push((name.clone(), value.clone()));
+        }
+    }
+    config.lower.seed = config.lower.seed.or(Some(picture.seed));
+    let dpi = picture.options.get("dpi").and_then(|dpi| dpi.parse().ok());
+    config.lower.dpi = config.lower.dpi.or(dpi);
+    config.only = config.only.take().or_else(|| picture.options.get("only").cloned());
+}
+
+/// How a picture was made, for the picture itself.
+pub(super) fn metadata(embed: Embed, config: &Config, opened: &Opened, compiled: &Compiled) -> Option<Metadata> {
+    let scene = compiled.lowered.scene.as_ref()?;
+    if embed == Embed::None {
+        return None;
+    }
+    let mut options = BTreeMap::new();
+    if let Some(dpi) = config.lower.dpi {
+        options.insert("dpi".to_owned(), dpi.to_string());
+    }
+    if let Some(only) = &config.only {
+        options.insert("only".to_owned(), only.clone());
+    }
+    Some(Metadata {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        seed: scene.seed,
+        scene: opened.path.clone(),
+        params: config.lower.sets.iter().cloned().collect(),
+        options,
+        sources: sources(&compiled.lowered),
+        files: match embed {
+            Embed::All => compiled.lowered.files.iter().map(|(path, bytes)| (path.clone(), bytes.to_vec())).collect(),
+            Embed::Text | Embed::None => Vec::new(),
+        },
+    })
+}
+
+/// The texts of files; values from the command line are kept as parameters.
+fn sources(lowered: &Lowered) -> Vec<(String, String)> {
+    let files = lowered.sources.iter().filter(|(_, source)| !source.name.starts_with("--"));
+    files.map(|(_, source)| (source.name.clone(), source.text.to_string())).collect()
+}

@@ -1,0 +1,155 @@
+//! Lowering: from documents to a scene.
+//!
+//! In: the path of a scene, a loader, the parameters that were set. Out: a [`Scene`] in which every name, unit, type and
+//! parameter is resolved, or every independent mistake that was found on the way.
+//!
+//! One evaluator serves for both. Code that cannot run (a branch not taken, a function's body, a tone that nothing paints
+//! with) is evaluated with unknown values: names, arguments and kinds are checked, ranges are not.
+
+mod call;
+mod canvas;
+mod convert;
+mod cx;
+mod draw;
+mod eval;
+mod experiment;
+mod files;
+mod modules;
+mod ops;
+mod params;
+mod scope;
+mod tone;
+mod value;
+mod vocabulary;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::diag::{self, Code, Diagnostic};
+use crate::loader::Loader;
+use crate::scene::{Limits, Scene};
+use crate::span::{Sources, Span};
+use crate::syntax::ast::StatementKind;
+
+pub use params::schema;
+
+use cx::Cx;
+
+/// What the caller decides about a scene.
+#[derive(Debug, Clone, Default)]
+pub struct LowerConfig {
+    /// Parameters with the values they are given, as expressions of the language; bare words will do for strings.
+    pub sets: Vec<(String, String)>,
+    /// Replaces the scene's seed.
+    pub seed: Option<u64>,
+    /// Replaces the canvas's resolution.
+    pub dpi: Option<f64>,
+    /// What the scene may use.
+    pub limits: Limits,
+}
+
+/// What lowering found.
+#[derive(Debug)]
+pub struct Lowered {
+    /// The scene, unless there are errors.
+    pub scene: Option<Scene>,
+    /// Errors and warnings in the order of the sources.
+    pub diagnostics: Vec<Diagnostic>,
+    /// Every text that was read, the scene's own first.
+    pub sources: Sources,
+    /// Every other file that was read, by its path from the root.
+    pub files: BTreeMap<String, Arc<[u8]>>,
+    /// Where the canvas is declared, for limits that are met later.
+    pub canvas_span: Option<Span>,
+}
+
+/// Reads and lowers the scene at `path`, a path from the loader's root.
+///
+/// Every independent mistake is reported; the scene is there only if none of them is an error.
+#[must_use]
+pub fn lower(path: &str, loader: &dyn Loader, config: &LowerConfig) -> Lowered {
+    // Values lead into each other as deep as the limits allow, which the stack of a small thread has no room for.
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(STACK);
+        match thread.spawn_scoped(scope, || lower_here(path, loader, config)) {
+            Ok(running) => match running.join() {
+                Ok(lowered) => lowered,
+                Err(panic) => std::panic::resume_unwind(panic),
+            },
+            // Where no thread can be had, the stack at hand has to do.
+            Err(_) => lower_here(path, loader, config),
+        }
+    })
+}
+
+/// Bytes of stack for lowering; only what is used is taken from the machine.
+const STACK: usize = 256 << 20;
+
+fn lower_here(path: &str, loader: &dyn Loader, config: &LowerConfig) -> Lowered {
+    let mut sources = Sources::new();
+    let mut diagnostics = Vec::new();
+    let files = modules::read(path, loader, &mut sources, &mut diagnostics);
+    let sets: Vec<_> = params::parse_sets(config, &mut sources, &mut diagnostics);
+    let modules = modules::declare(&files, &mut diagnostics);
+    let mut lowered = match modules.is_empty() {
+        true => Lowered { scene: None, diagnostics, sources, files: BTreeMap::new(), canvas_span: None },
+        false => {
+            let mut cx = Cx::new(&modules, loader, config, diagnostics);
+            let scene = scene(&mut cx, &sets);
+            let (diagnostics, files) = cx.finish();
+            let canvas_span = files_canvas(&modules);
+            Lowered { scene, diagnostics, sources, files, canvas_span }
+        }
+    };
+    diag::sort(&mut lowered.diagnostics);
+    if lowered.diagnostics.iter().any(Diagnostic::is_error) {
+        lowered.scene = None;
+    }
+    lowered
+}
+
+/// Where the first module declares its canvas.
+fn files_canvas(modules: &[modules::Module<'_>]) -> Option<Span> {
+    modules.first()?.document.statements.iter().find_map(|statement| match statement.kind {
+        StatementKind::Canvas(_) => Some(statement.span),
+        _ => None,
+    })
+}
+
+/// Lowers the first module with all it imports.
+fn scene<'a>(cx: &mut Cx<'a, '_>, sets: &'a [params::Set]) -> Option<Scene> {
+    let canvas = canvas::lower(cx);
+    params::apply(cx, sets);
+    let seed = canvas::seed(cx);
+    cx.seed = cx.config.seed.or(seed).unwrap_or(0);
+    modules::check_declarations(cx);
+    let draws = draw::lower(cx);
+    let params = params::list(cx);
+    let experiments = experiment::lower(cx);
+    let canvas = match canvas {
+        Some(canvas) => canvas,
+        None if draws.is_empty() => canvas::default(),
+        None => {
+            cx.missing_canvas();
+            return None;
+        }
+    };
+    Some(Scene { canvas, seed: cx.seed, params, draws, experiments })
+}
+
+impl Cx<'_, '_> {
+    /// Says that a scene that draws has no canvas, unless a canvas was written and is at fault itself.
+    fn missing_canvas(&mut self) {
+        let Some(module) = self.modules.first() else { return };
+        if files_canvas(self.modules).is_some() {
+            return;
+        }
+        let first = module.document.statements.iter().find(|s| draw::is_drawing(&s.kind));
+        if let Some(statement) = first {
+            let diagnostic = Diagnostic::error(Code::Missing, statement.span, "a scene that draws needs a canvas")
+                .label("drawn on what?")
+                .hint("put `canvas { size: a4 }` or `canvas { size: (60mm, 60mm) }` at the top");
+            self.report(diagnostic);
+        }
+    }
+}

@@ -1,0 +1,373 @@
+//! Tones: recipes with parameters, properties and inheritance, up to the tone that a paint uses.
+
+use std::rc::Rc;
+
+use crate::diag::{Code, Diagnostic, did_you_mean};
+use crate::field::Field;
+use crate::geom::{Angle, Length};
+use crate::scene::{
+    AngleRule, Blend, Domain, Edge, Fill, Ground, Link, Over, Placement, Shape, Stack, Tone as SceneTone,
+};
+use crate::span::Span;
+use crate::syntax::ast::{Argument, Expr, ExprKind, Property, ToneBody};
+
+use super::call::not_yet;
+use super::convert::{Slot, coerce};
+use super::cx::Cx;
+use super::eval;
+use super::modules::Tone;
+use super::scope::Scope;
+use super::value::{FieldUnit, Kind, TypedField, Value};
+
+/// A tone with its properties as far as they are given.
+#[derive(Debug, Clone)]
+pub(super) struct ToneValue {
+    /// What it is called; paints without a name are called after it.
+    pub(super) name: String,
+    /// Where it is declared.
+    declared: Span,
+    properties: Vec<Given>,
+    /// Whether a property could not be read, which was reported.
+    broken: bool,
+}
+
+/// A property that is given.
+#[derive(Debug, Clone)]
+struct Given {
+    name: &'static str,
+    value: Value,
+    span: Span,
+}
+
+/// The properties of tones with what each takes.
+const PROPERTIES: [(&str, Slot); 13] = [
+    ("place", Slot::of(Kind::Placement)),
+    ("domain", Slot::words(&["canvas", "region"])),
+    ("bleed", Slot::of(Kind::Length)),
+    ("shape", Slot::of(Kind::Shape)),
+    ("link", Slot::words(&["delaunay"])),
+    ("angle", Slot::of(Kind::Angles)),
+    ("fill", Slot::of(Kind::Fill)),
+    ("k", Slot::of(Kind::Field)),
+    ("blend", Slot::words(&["step", "partial", "dither", "contour"])),
+    ("stack", Slot::words(&["cover", "through"])),
+    ("over", Slot::words(&["print", "knockout"])),
+    ("ground", Slot::or_words(Kind::Fill, &["nearest"])),
+    ("edge", Slot::words(&["clip", "whole", "centre"])),
+];
+
+/// Properties that a later version draws.
+const LATER: [&str; 4] = ["darkness", "hand", "range", "solid"];
+
+/// The direction of a ground's lines, which no tile turns: the diagonal that the hand takes.
+const GROUND_DEGREES: f64 = 45.0;
+
+/// The tone of a name that can be seen from a module.
+pub(super) fn find<'a>(cx: &Cx<'a, '_>, module: usize, name: &str) -> Option<Tone<'a>> {
+    let module = &cx.modules[module];
+    let opened = module.opened.iter().map(|&opened| &cx.modules[opened]);
+    std::iter::once(module).chain(opened).find_map(|module| module.tones.get(name)).copied()
+}
+
+/// A tone with arguments, which are evaluated in the caller's scope.
+pub(super) fn instantiate<'a>(
+    cx: &mut Cx<'a, '_>,
+    caller: &Rc<Scope<'a>>,
+    tone: Tone<'a>,
+    arguments: &'a [Argument],
+    span: Span,
+) -> Value {
+    let what = format!("`{}`", tone.name.name);
+    let scope = eval::bind_arguments(cx, caller, &what, (tone.module, tone.params), arguments, span);
+    let Some(scope) = scope else { return Value::Unknown(Some(Kind::Tone)) };
+    if !cx.count_iteration(span) {
+        return Value::Unknown(Some(Kind::Tone));
+    }
+    let value = cx.nested(span, |cx| properties(cx, &scope, tone)).flatten();
+    value.map_or(Value::Unknown(Some(Kind::Tone)), |tone| Value::Tone(Rc::new(tone)))
+}
+
+/// Evaluates a tone that nothing may paint with, with unknown arguments.
+pub(super) fn check<'a>(cx: &mut Cx<'a, '_>, tone: Tone<'a>) {
+    let scope = eval::unknown_arguments(cx, tone.module, tone.params);
+    let checked = cx.nested(tone.name.span, |cx| properties(cx, &scope, tone));
+    if let (Some(Some(tone)), ToneBody::Properties(_)) = (checked, tone.body)
+        && !tone.broken
+    {
+        tone.check_pairs(cx);
+    }
+}
+
+fn properties<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, tone: Tone<'a>) -> Option<ToneValue> {
+    let (mut value, given) = match tone.body {
+        ToneBody::Properties(given) => {
+            let empty =
+                ToneValue { name: String::new(), declared: tone.name.span, properties: Vec::new(), broken: false };
+            (empty, given)
+        }
+        ToneBody::Derived { base, with } => {
+            let base = match expect_tone(cx, scope, base) {
+                Value::Tone(base) => (*base).clone(),
+                // The base is unknown or broken, but what differs can be looked at all the same.
+                _ => ToneValue {
+                    name: String::new(),
+                    declared: tone.name.span,
+                    properties: Vec::new(),
+                    broken: true,
+                },
+            };
+            (base, with)
+        }
+    };
+    value.name.clone_from(&tone.name.name);
+    value.declared = tone.name.span;
+    let mut seen: Vec<(&str, Span)> = Vec::new();
+    for property in given {
+        let name = property.name.name.as_str();
+        if let Some((_, earlier)) = seen.iter().find(|(seen, _)| *seen == name) {
+            let message = format!("the property `{name}` is given twice");
+            let diagnostic = Diagnostic::error(Code::Duplicate, property.name.span, message);
+            cx.report(diagnostic.note(*earlier, "first given here"));
+            continue;
+        }
+        seen.push((name, property.name.span));
+        value.give(cx, scope, property);
+    }
+    Some(value)
+}
+
+/// The value of an expression that names a tone.
+pub(super) fn expect_tone<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, expr: &'a Expr) -> Value {
+    let slot = Slot::of(Kind::Tone);
+    // Behind `with` a name that is nothing else is a misspelt tone.
+    let unknown = match &expr.kind {
+        ExprKind::Name(name) => Some((name, &[][..], expr.span)),
+        ExprKind::Call(callee, arguments) => match &callee.kind {
+            ExprKind::Name(name) => Some((name, &arguments[..], callee.span)),
+            _ => None,
+        },
+        ExprKind::Member(base, member) => return member_tone(cx, scope, base, member, expr.span),
+        _ => None,
+    };
+    if let Some((name, arguments, span)) = unknown
+        && find(cx, scope.module, name).is_none()
+        && (matches!(expr.kind, ExprKind::Call(..)) || eval::lookup(cx, scope, name, span).is_none())
+    {
+        for argument in arguments {
+            eval::eval(cx, scope, &argument.value, Slot::of(Kind::Field));
+        }
+        let modules = cx.modules;
+        let module = &modules[scope.module];
+        let opened = module.opened.iter().flat_map(|&opened| modules[opened].tones.keys().copied());
+        let known: Vec<&str> = module.tones.keys().copied().chain(opened).collect();
+        let hint = did_you_mean(name, known.iter().copied()).or_else(|| {
+            let alias = module.aliases.iter().find(|(_, index)| modules[**index].tones.contains_key(name.as_str()));
+            alias.map(|(alias, _)| format!("`{alias}.{name}` is a tone"))
+        });
+        cx.report(Diagnostic::error(Code::UnknownTone, span, format!("there is no tone `{name}`")).maybe_hint(hint));
+        return Value::Unknown(Some(Kind::Tone));
+    }
+    eval::expect(cx, scope, expr, slot)
+}
+
+/// `module.tone` without arguments, or a value of that name.
+fn member_tone<'a>(
+    cx: &mut Cx<'a, '_>,
+    scope: &Rc<Scope<'a>>,
+    base: &'a Expr,
+    member: &'a crate::syntax::ast::Ident,
+    span: Span,
+) -> Value {
+    let Some(module) = eval::module_of(cx, scope, base) else { return Value::Unknown(Some(Kind::Tone)) };
+    let modules = cx.modules;
+    if let Some(&tone) = modules[module].tones.get(member.name.as_str()) {
+        return instantiate(cx, scope, tone, &[], span);
+    }
+    let inner = &modules[module].scope;
+    if inner.own(&member.name).is_some() {
+        let value = eval::force(cx, inner, &member.name, member.span);
+        return coerce(cx, value, Slot::of(Kind::Tone), span);
+    }
+    let message = format!("`{}` declares no tone `{}`", modules[module].path, member.name);
+    let hint = did_you_mean(&member.name, modules[module].tones.keys().copied());
+    cx.report(Diagnostic::error(Code::UnknownTone, member.span, message).maybe_hint(hint));
+    Value::Unknown(Some(Kind::Tone))
+}
+
+impl ToneValue {
+    fn give<'a>(&mut self, cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, property: &'a Property) {
+        let name = &property.name;
+        let Some((known, slot)) = PROPERTIES.iter().find(|(known, _)| *known == name.name) else {
+            self.broken = true;
+            eval::eval(cx, scope, &property.value, Slot::of(Kind::Field));
+            if LATER.contains(&name.name.as_str()) {
+                cx.report(not_yet(&name.name, name.span));
+                return;
+            }
+            let names = PROPERTIES.iter().map(|(name, _)| *name);
+            let hint = did_you_mean(&name.name, names.clone()).unwrap_or_else(|| {
+                format!("tones have {}", names.map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "))
+            });
+            let message = format!("tones have no property `{}`", name.name);
+            cx.report(Diagnostic::error(Code::UnknownProperty, name.span, message).hint(hint));
+            return;
+        };
+        let value = eval::eval(cx, scope, &property.value, *slot);
+        let value = match (*known, value) {
+            ("fill", Value::List(members)) => self.fills(cx, &members, property.value.span),
+            (_, value) => coerce(cx, value, *slot, property.value.span),
+        };
+        let value = self.held_to_range(cx, known, value, property.value.span);
+        self.broken |= value.is_unknown();
+        self.properties.retain(|given| given.name != *known);
+        self.properties.push(Given { name: known, value, span: property.value.span });
+    }
+
+    fn fills(&mut self, cx: &mut Cx<'_, '_>, members: &Rc<[Value]>, span: Span) -> Value {
+        if members.is_empty() {
+            cx.report_value(Diagnostic::error(Code::Range, span, "the list of fills is empty"));
+            return Value::Unknown(Some(Kind::Fill));
+        }
+        Value::List(members.iter().map(|member| coerce(cx, member.clone(), Slot::of(Kind::Fill), span)).collect())
+    }
+
+    fn held_to_range(&self, cx: &mut Cx<'_, '_>, name: &str, value: Value, span: Span) -> Value {
+        let message = match (name, &value) {
+            ("bleed", Value::Length(mm)) if *mm < 0.0 => "`bleed` must not be negative".to_owned(),
+            ("k", Value::Field(TypedField { unit, .. })) if *unit != FieldUnit::Number => {
+                let message = format!("`k` takes numbers, not {}", unit.noun());
+                cx.report(Diagnostic::error(Code::Type, span, message));
+                return Value::Unknown(Some(Kind::Field));
+            }
+            _ => return value,
+        };
+        cx.report_value(Diagnostic::error(Code::Range, span, message));
+        Value::Unknown(value.kind())
+    }
+
+    fn get(&self, name: &str) -> Option<&Given> {
+        self.properties.iter().find(|given| given.name == name)
+    }
+
+    fn word(&self, name: &str) -> Option<&'static str> {
+        match self.get(name)?.value {
+            Value::Word(word) => Some(word),
+            _ => None,
+        }
+    }
+
+    /// Properties that do not go together.
+    fn check_pairs(&self, cx: &mut Cx<'_, '_>) -> bool {
+        let (Some(place), Some(angle)) = (self.get("place"), self.get("angle")) else { return true };
+        if let (Value::Placement(placement), Value::Angles(rule)) = (&place.value, &angle.value)
+            && matches!(**rule, AngleRule::Checkerboard)
+            && !matches!(**placement, Placement::Grid(_))
+        {
+            let message = "a checkerboard of angles needs the rows and columns of a grid";
+            cx.report_value(
+                Diagnostic::error(Code::Checkerboard, angle.span, message)
+                    .note(place.span, "this placement has none")
+                    .hint("`place: grid(spacing: …)`, or another rule such as `bfs()`"),
+            );
+            return false;
+        }
+        true
+    }
+
+    /// The tone that a paint uses, every property decided; `None` where something is missing, which was reported.
+    pub(super) fn settle(&self, cx: &mut Cx<'_, '_>, span: Span) -> Option<SceneTone> {
+        if self.broken {
+            return None;
+        }
+        let mut whole = self.check_pairs(cx);
+        for name in ["place", "fill"] {
+            if self.get(name).is_none() {
+                let message = format!("the tone `{}` has no `{name}`", self.name);
+                let diagnostic = Diagnostic::error(Code::Missing, span, message);
+                cx.report(diagnostic.note(self.declared, format!("give `{name}` here")));
+                whole = false;
+            }
+        }
+        if !whole {
+            return None;
+        }
+        let place = self.get("place")?;
+        let Value::Placement(placement) = &place.value else { return None };
+        let shape = match self.get("shape").map(|given| &given.value) {
+            Some(Value::Shape(shape)) => (**shape).clone(),
+            _ => Shape::Rect { width: None, height: None, overlap: None, upright: false },
+        };
+        let angle = match self.get("angle").map(|given| &given.value) {
+            Some(Value::Angles(rule)) => (**rule).clone(),
+            _ => AngleRule::Bfs { candidates: 360 },
+        };
+        let (k, k_span) = match self.get("k") {
+            Some(Given { value: Value::Field(TypedField { field, .. }), span, .. }) => (field.clone(), *span),
+            _ => (Field::constant(1.0), span),
+        };
+        Some(SceneTone {
+            place: (**placement).clone(),
+            place_span: place.span,
+            domain: match self.word("domain") {
+                Some("region") => Domain::Region,
+                _ => Domain::Canvas,
+            },
+            bleed: match self.get("bleed").map(|given| &given.value) {
+                Some(Value::Length(mm)) => Some(Length::mm(*mm)),
+                _ => None,
+            },
+            stack: match self.word("stack") {
+                Some("through") => Stack::Through,
+                Some("cover") => Stack::Cover,
+                _ if shape.is_cell() => Stack::Through,
+                _ => Stack::Cover,
+            },
+            shape,
+            link: Link::Delaunay,
+            angle,
+            fill: self.fill_list()?,
+            k,
+            k_span,
+            blend: match self.word("blend") {
+                Some("partial") => Blend::Partial,
+                Some("dither") => Blend::Dither,
+                Some("contour") => Blend::Contour,
+                _ => Blend::Step,
+            },
+            over: match self.word("over") {
+                Some("knockout") => Over::Knockout,
+                _ => Over::Print,
+            },
+            ground: self.ground(),
+            edge: match self.word("edge") {
+                Some("whole") => Edge::Whole,
+                Some("centre") => Edge::Centre,
+                _ => Edge::Clip,
+            },
+        })
+    }
+
+    fn fill_list(&self) -> Option<Vec<Fill>> {
+        match &self.get("fill")?.value {
+            Value::Fill(fill) => Some(vec![(**fill).clone()]),
+            Value::List(members) => members
+                .iter()
+                .map(|member| match member {
+                    Value::Fill(fill) => Some((**fill).clone()),
+                    _ => None,
+                })
+                .collect(),
+            _ => None,
+        }
+    }
+
+    fn ground(&self) -> Option<Ground> {
+        match &self.get("ground")?.value {
+            Value::Fill(fill) => {
+                Some(Ground::Fill { fill: (**fill).clone(), angle: Angle::degrees(GROUND_DEGREES) })
+            }
+            Value::Word(_) => Some(Ground::Nearest),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! Placements and angle rules.
+
+use std::rc::Rc;
+
+use crate::geom::Length;
+use crate::scene::{Amount, AngleRule, GridSize, Placement};
+
+use super::super::call::{Call, Signature, later, optional, required};
+use super::super::convert::{Slot, coerce};
+use super::super::value::{FieldUnit, Kind, TypedField, Value};
+use crate::diag::{Code, Diagnostic};
+use crate::field::Field;
+
+const LENGTH: Slot = Slot::of(Kind::Length);
+const NUMBER: Slot = Slot::of(Kind::Number);
+const FIELD: Slot = Slot::of(Kind::Field);
+
+/// The most rows, columns, candidates and tries that are sensible; tiles have a limit of their own.
+const MANY: u32 = 1_000_000;
+
+pub(super) const SIGNATURES: &[Signature] = &[
+    Signature {
+        name: "poisson",
+        result: Some(Kind::Placement),
+        params: &[required("radius", LENGTH), optional("tries", NUMBER), optional("density", FIELD)],
+        build: poisson,
+    },
+    Signature {
+        name: "uniform",
+        result: Some(Kind::Placement),
+        params: &[optional("count", Slot::ANY), optional("density", FIELD)],
+        build: uniform,
+    },
+    Signature {
+        name: "grid",
+        result: Some(Kind::Placement),
+        params: &[optional("spacing", LENGTH), optional("columns", NUMBER), optional("rows", NUMBER)],
+        build: grid,
+    },
+    Signature {
+        name: "hex",
+        result: Some(Kind::Placement),
+        params: &[required("spacing", LENGTH)],
+        build: |call| {
+            let spacing = call.positive("spacing", None)?;
+            placement(Placement::Hex { spacing })
+        },
+    },
+    Signature {
+        name: "points",
+        result: Some(Kind::Placement),
+        params: &[required("at", Slot::of(Kind::List))],
+        build: points,
+    },
+];
+
+pub(super) const ANGLES: &[Signature] = &[
+    Signature {
+        name: "bfs",
+        result: Some(Kind::Angles),
+        params: &[optional("candidates", NUMBER), later("see"), later("start")],
+        build: |call| {
+            let candidates = call.whole("candidates", 2, MANY, Some(360))?;
+            angles(AngleRule::Bfs { candidates })
+        },
+    },
+    Signature { name: "random", result: Some(Kind::Angles), params: &[], build: |_| angles(AngleRule::Random) },
+    Signature {
+        name: "checkerboard",
+        result: Some(Kind::Angles),
+        params: &[],
+        build: |_| angles(AngleRule::Checkerboard),
+    },
+    Signature {
+        name: "fixed",
+        result: Some(Kind::Angles),
+        params: &[required("angle", Slot::of(Kind::Angle))],
+        build: |call| angles(AngleRule::Fixed(call.angle("angle")?)),
+    },
+    Signature {
+        name: "along",
+        result: Some(Kind::Angles),
+        params: &[required("field", FIELD)],
+        build: |call| match call.value("field")? {
+            Value::Field(TypedField { field, unit: FieldUnit::Angle }) => angles(AngleRule::Along(field)),
+            Value::Field(field) => {
+                let message = format!("`along` takes a field of angles, not {}", field.unit.noun());
+                let span = call.span_of("field");
+                let hint = "multiply by an angle: `f * 180deg`";
+                call.cx.report(Diagnostic::error(Code::Type, span, message).hint(hint));
+                None
+            }
+            _ => None,
+        },
+    },
+];
+
+fn placement(placement: Placement) -> Option<Value> {
+    Some(Value::Placement(Rc::new(placement)))
+}
+
+fn angles(rule: AngleRule) -> Option<Value> {
+    Some(Value::Angles(Rc::new(rule)))
+}
+
+fn poisson(call: &mut Call<'_, '_, '_>) -> Option<Value> {
+    let radius = call.positive("radius", None)?;
+    let tries = call.whole("tries", 1, 10_000, Some(30))?;
+    let density = if call.has("density") { Some(call.number_field("density")?) } else { None };
+    placement(Placement::Poisson { radius, tries, density })
+}
+
+fn uniform(call: &mut Call<'_, '_, '_>) -> Option<Value> {
+    let density: Option<Field> = if call.has("density") { Some(call.number_field("density")?) } else { None };
+    let amount = match (call.get("count").cloned(), density) {
+        (None, None) => {
+            let message = "`uniform` needs `count` or `density`";
+            call.cx.report(Diagnostic::error(Code::Missing, call.span, message));
+            return None;
+        }
+        (None, Some(density)) => Amount::Density { density, unit: Length::mm(call.cx.unit) },
+        (Some(given), density) => match given.value {
+            Value::Placement(placement) if density.is_none() => Amount::AsMany(Box::new((*placement).clone())),
+            Value::Placement(_) => {
+                let message = "`density` does not go with the count of another placement";
+                call.cx.report(Diagnostic::error(Code::Type, call.span_of("density"), message));
+                return None;
+            }
+            value => {
+                // Anything but a placement is held to a number, which says what is wrong with the rest.
+                coerce(call.cx, value, Slot::of(Kind::Number), given.span).number()?;
+                let count = call.whole("count", 1, u32::MAX, None)?;
+                Amount::Count { count, density }
+            }
+        },
+    };
+    placement(Placement::Uniform { amount })
+}
+
+fn grid(call: &mut Call<'_, '_, '_>) -> Option<Value> {
+    let cells = (call.has("columns"), call.has("rows"));
+    let size = match (call.has("spacing"), cells) {
+        (true, (false, false)) => GridSize::Spacing(call.positive("spacing", None)?),
+        (false, (true, true)) => GridSize::Cells {
+            columns: call.whole("columns", 1, MANY, None)?,
+            rows: call.whole("rows", 1, MANY, None)?,
+        },
+        (true, _) => {
+            let message = "`grid` takes `spacing`, or `columns` and `rows`, not both";
+            call.cx.report(Diagnostic::error(Code::Duplicate, call.span, message));
+            return None;
+        }
+        (false, _) => {
+            let message = "`grid` needs `spacing`, or both `columns` and `rows`";
+            call.cx.report(Diagnostic::error(Code::Missing, call.span, message));
+            return None;
+        }
+    };
+    placement(Placement::Grid(size))
+}
+
+fn points(call: &mut Call<'_, '_, '_>) -> Option<Value> {
+    let Some(Value::List(members)) = call.value("at") else { return None };
+    let span = call.span_of("at");
+    if members.is_empty() {
+        return call.refuse("at", "`points` needs at least one point".to_owned());
+    }
+    let mut points = Vec::with_capacity(members.len());
+    for member in members.iter() {
+        points.push(coerce(call.cx, member.clone(), Slot::of(Kind::Point), span).as_point()?);
+    }
+    placement(Placement::Points(points))
+}

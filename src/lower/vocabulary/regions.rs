@@ -1,0 +1,210 @@
+//! Regions.
+
+use crate::geom::{Angle, Length, Point, Vec2};
+use crate::region::Region;
+
+use super::super::call::{Call, Signature, later, optional, required};
+use super::super::convert::{Slot, coerce};
+use super::super::files;
+use super::super::value::{Kind, Value};
+use crate::diag::{Code, Diagnostic};
+
+const REGION: Slot = Slot::of(Kind::Region);
+const POINT: Slot = Slot::of(Kind::Point);
+const LENGTH: Slot = Slot::of(Kind::Length);
+const STRING: Slot = Slot::of(Kind::String);
+const BOX: Slot = Slot::of(Kind::Box);
+
+pub(super) const SIGNATURES: &[Signature] = &[
+    Signature {
+        name: "rect",
+        result: Some(Kind::Region),
+        params: &[required("at", POINT), required("size", POINT)],
+        build: |call| {
+            let at = call.point("at")?;
+            let size = extent(call, "size")?;
+            region(Region::rect(crate::geom::Rect::new(at, at + size)))
+        },
+    },
+    Signature {
+        name: "circle",
+        result: Some(Kind::Region),
+        params: &[required("center", POINT), required("radius", LENGTH)],
+        build: |call| {
+            let centre = call.point("center")?;
+            let radius = call.positive("radius", None)?;
+            region(Region::circle(centre, radius))
+        },
+    },
+    Signature {
+        name: "ellipse",
+        result: Some(Kind::Region),
+        params: &[required("center", POINT), required("radius", POINT)],
+        build: |call| {
+            let centre = call.point("center")?;
+            let radius = extent(call, "radius")?;
+            region(Region::ellipse(centre, Length::mm(radius.x), Length::mm(radius.y)))
+        },
+    },
+    Signature {
+        name: "polygon",
+        result: Some(Kind::Region),
+        params: &[required("corners", Slot::of(Kind::List))],
+        build: polygon,
+    },
+    Signature {
+        name: "path",
+        result: Some(Kind::Region),
+        params: &[required("data", STRING)],
+        build: path,
+    },
+    Signature {
+        name: "svg",
+        result: Some(Kind::Region),
+        params: &[
+            required("file", STRING),
+            optional("id", STRING),
+            optional("fit", BOX),
+            optional("layer", STRING),
+            optional("class", STRING),
+            later("colour"),
+        ],
+        build: |call| {
+            let fit = if call.has("fit") { Some(call.area("fit")?) } else { None };
+            not_empty(call, "the SVG file's filled shapes hold nothing", |call| files::svg(call, fit))
+        },
+    },
+    Signature {
+        name: "mask",
+        result: Some(Kind::Region),
+        params: &[required("file", STRING), optional("threshold", Slot::of(Kind::Number)), optional("fit", BOX)],
+        build: mask,
+    },
+    Signature {
+        name: "inset",
+        result: Some(Kind::Region),
+        params: &[required("region", REGION), required("distance", LENGTH)],
+        build: |call| {
+            let distance = Length::mm(call.get("distance")?.value.as_length()?);
+            let inset = call.region("region")?.inset(distance);
+            if inset.is_empty() {
+                let message = format!("nothing is left of the region {}mm inside its outline", distance.to_mm());
+                let span = call.span;
+                call.cx.report_value(Diagnostic::error(Code::EmptyRegion, span, message));
+                return None;
+            }
+            region(inset)
+        },
+    },
+    Signature {
+        name: "translate",
+        result: Some(Kind::Region),
+        params: &[required("region", REGION), required("by", POINT)],
+        build: |call| {
+            let by = call.point("by")?;
+            region(call.region("region")?.translated(Vec2::new(by.x, by.y)))
+        },
+    },
+    Signature {
+        name: "rotate",
+        result: Some(Kind::Region),
+        params: &[required("region", REGION), required("angle", Slot::of(Kind::Angle)), optional("about", POINT)],
+        build: |call| {
+            let base = call.region("region")?;
+            let about = about(call, &base);
+            let angle: Angle = call.angle("angle")?;
+            region(base.rotated(angle, about))
+        },
+    },
+    Signature {
+        name: "scale",
+        result: Some(Kind::Region),
+        params: &[required("region", REGION), required("factor", Slot::of(Kind::Number)), optional("about", POINT)],
+        build: |call| {
+            let base = call.region("region")?;
+            let about = about(call, &base);
+            let factor = call.number("factor")?;
+            if factor <= 0.0 {
+                return call.refuse("factor", "`factor` must be greater than zero".to_owned());
+            }
+            region(base.scaled([factor, factor], about))
+        },
+    },
+    Signature {
+        name: "bounds",
+        result: Some(Kind::Region),
+        params: &[required("region", REGION)],
+        build: |call| region(Region::rect(call.region("region")?.bounds())),
+    },
+];
+
+fn region(region: Region) -> Option<Value> {
+    Some(Value::Region(region))
+}
+
+/// Where a region turns or grows from: a point that is given, else the middle of its box.
+fn about(call: &Call<'_, '_, '_>, base: &Region) -> Point {
+    call.point("about").unwrap_or_else(|| base.bounds().centre())
+}
+
+/// A pair of lengths, both greater than zero.
+fn extent(call: &mut Call<'_, '_, '_>, name: &str) -> Option<Vec2> {
+    let size = call.point(name)?;
+    if size.x > 0.0 && size.y > 0.0 {
+        return Some(Vec2::new(size.x, size.y));
+    }
+    call.refuse(name, format!("both members of `{name}` must be greater than zero"))
+}
+
+fn not_empty(
+    call: &mut Call<'_, '_, '_>,
+    message: &str,
+    make: impl FnOnce(&mut Call<'_, '_, '_>) -> Option<Region>,
+) -> Option<Value> {
+    let made = make(call)?;
+    if made.is_empty() {
+        let span = call.span;
+        call.cx.report_value(Diagnostic::error(Code::EmptyRegion, span, message));
+        return None;
+    }
+    region(made)
+}
+
+fn polygon(call: &mut Call<'_, '_, '_>) -> Option<Value> {
+    let Some(Value::List(members)) = call.value("corners") else { return None };
+    let span = call.span_of("corners");
+    if members.len() < 3 {
+        return call.refuse("corners", format!("a polygon needs at least three corners, not {}", members.len()));
+    }
+    let mut corners = Vec::with_capacity(members.len());
+    for member in members.iter() {
+        corners.push(coerce(call.cx, member.clone(), Slot::of(Kind::Point), span).as_point()?);
+    }
+    not_empty(call, "the polygon has no area", |_| Some(Region::polygon(&corners)))
+}
+
+fn path(call: &mut Call<'_, '_, '_>) -> Option<Value> {
+    let Some(Value::String(data)) = call.value("data") else { return None };
+    let unit = call.cx.unit_length();
+    not_empty(call, "the path encloses nothing", |call| match Region::path(&data.value, unit) {
+        Ok(region) => Some(region),
+        Err(error) => {
+            let diagnostic = Diagnostic::error(Code::Path, call.span_of("data"), error.to_string());
+            call.cx.report_value(diagnostic.hint("path data looks like `M 0 0 L 10 0 L 10 10 Z`"));
+            None
+        }
+    })
+}
+
+fn mask(call: &mut Call<'_, '_, '_>) -> Option<Value> {
+    let threshold = call.within("threshold", 0.0, 1.0, 0.5)?;
+    let fit = match (call.has("fit"), call.cx.page.as_ref()) {
+        (true, _) => call.area("fit")?,
+        (false, Some(page)) => page.bounds(),
+        (false, None) => return None,
+    };
+    let image = files::image(call, "luminance")?;
+    not_empty(call, "no part of the image is darker than the threshold", |_| {
+        Some(crate::field::mask(&image, threshold, fit))
+    })
+}

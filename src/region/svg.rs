@@ -1,0 +1,274 @@
+//! SVG files: bytes come in, the outlines of what is filled go out.
+//!
+//! Outlines stand where the file shows them: after transforms, units, `use` and clip paths, by each path's fill rule.
+//! Strokes, text, images, masks and filters play no part, and what is hidden is left out. Nothing but the bytes is read:
+//! no pictures, fonts or files that they name. The parser works in `f32`, whose last bits differ between machines, so
+//! points are snapped to 1/1024 mm.
+
+mod document;
+mod read;
+#[cfg(test)]
+mod tests;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+use std::ops::Range;
+
+use super::curve::Pen;
+use super::{FillRule, Region, contained, overlay};
+use crate::geom::{Length, Point, Rect};
+
+/// Points lie on multiples of this many millimetres.
+const SNAP: f64 = 1.0 / 1024.0;
+
+/// Pixels in an inch, by definition of CSS.
+const PIXELS_PER_INCH: f64 = 96.0;
+
+/// The stack for reading a file: deep `use` chains are read by functions that call themselves.
+const STACK: usize = 64 << 20;
+
+/// A file that has been read.
+#[derive(Debug, Clone)]
+pub struct SvgFile {
+    /// The page's size in pixels.
+    size: [f64; 2],
+    /// What is filled, in the order of drawing.
+    shapes: Vec<Shape>,
+    clips: Vec<Clip>,
+    /// Runs of `shapes` under each element that has the name.
+    ids: BTreeMap<String, Vec<Range<usize>>>,
+    layers: BTreeMap<String, Vec<Range<usize>>>,
+    classes: BTreeMap<String, Vec<Range<usize>>>,
+}
+
+/// Something filled.
+#[derive(Debug, Clone)]
+struct Shape {
+    /// In pixels of the page.
+    steps: Vec<Step>,
+    rule: FillRule,
+    /// The clip path it is seen through.
+    clip: Option<usize>,
+}
+
+/// A clip path in one of the places where it is used.
+#[derive(Debug, Clone)]
+struct Clip {
+    shapes: Vec<Shape>,
+    /// Another one, which what is seen through this one is seen through too. It stands earlier in the list.
+    outer: Option<usize>,
+}
+
+/// A piece of an outline.
+#[derive(Debug, Clone, Copy)]
+enum Step {
+    Move(Point),
+    Line(Point),
+    Quadratic(Point, Point),
+    Cubic(Point, Point, Point),
+    Close,
+}
+
+/// Which part of a file is meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Selection<'a> {
+    /// All of it.
+    Whole,
+    /// The element with this id, and what it holds.
+    Id(&'a str),
+    /// The layers of Inkscape with this label.
+    Layer(&'a str),
+    /// All elements of this class.
+    Class(&'a str),
+}
+
+/// Why a file gives no region.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum SvgError {
+    /// It is no SVG file, or a damaged one; in the reader's words, with line and column.
+    Unreadable(String),
+    /// It is compressed.
+    Compressed,
+    /// Elements are nested too deeply.
+    TooDeep {
+        /// How deep they may be.
+        most: usize,
+    },
+    /// It has more elements than are read.
+    TooLarge,
+    /// Its page has no size.
+    NoSize,
+    /// No element has the id.
+    NoSuchId {
+        /// The id that was asked for.
+        id: String,
+        /// The ids that there are, in order.
+        known: Vec<String>,
+    },
+    /// No layer has the label.
+    NoSuchLayer {
+        /// The label that was asked for.
+        layer: String,
+        /// The labels that there are, in order.
+        known: Vec<String>,
+    },
+    /// No element has the class.
+    NoSuchClass {
+        /// The class that was asked for.
+        class: String,
+        /// The classes that there are, in order.
+        known: Vec<String>,
+    },
+    /// What was asked for is there, but nothing in it is filled.
+    NotFilled,
+}
+
+impl fmt::Display for SvgError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unreadable(why) => write!(f, "the SVG file cannot be read: {why}"),
+            Self::Compressed => f.write_str("the SVG file is compressed; save it as plain SVG"),
+            Self::TooDeep { most } => write!(f, "the SVG file nests elements more than {most} deep"),
+            Self::TooLarge => f.write_str("the SVG file has too many elements, or its `use` elements repeat too much"),
+            Self::NoSize => f.write_str("the page of the SVG file has no size"),
+            Self::NoSuchId { id, .. } => write!(f, "no element of the SVG file has the id `{id}`"),
+            Self::NoSuchLayer { layer, .. } => write!(f, "no layer of the SVG file is called `{layer}`"),
+            Self::NoSuchClass { class, .. } => write!(f, "no element of the SVG file has the class `{class}`"),
+            Self::NotFilled => f.write_str("nothing is filled here: outlines are those of filled paths"),
+        }
+    }
+}
+
+impl std::error::Error for SvgError {}
+
+/// Reads an SVG file.
+///
+/// # Errors
+/// Where the bytes are no SVG file, or one whose elements are too many or nested too deeply.
+pub fn outlines(bytes: &[u8]) -> Result<SvgFile, SvgError> {
+    if bytes.starts_with(&[0x1f, 0x8b]) {
+        return Err(SvgError::Compressed);
+    }
+    let text = std::str::from_utf8(bytes).map_err(|_| SvgError::Unreadable("it is not written in UTF-8".into()))?;
+    // A thread of its own, for its stack.
+    std::thread::scope(|scope| {
+        let reading = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, || read::read(text));
+        let reading = reading.map_err(|error| SvgError::Unreadable(error.to_string()))?;
+        reading.join().unwrap_or_else(|_| Err(SvgError::Unreadable("the reader gave up on it".into())))
+    })
+}
+
+impl SvgFile {
+    /// The outlines of a part of the file. Without a box to fit, the page keeps its size and its top left corner lies at
+    /// the origin; with one the whole page, whatever was selected, is made as large as the box allows and lies in its
+    /// middle, so that several parts of one file stay in register.
+    ///
+    /// # Errors
+    /// Where there is no such part, or nothing in it is filled.
+    pub fn region(&self, selection: Selection<'_>, fit: Option<Rect>) -> Result<Region, SvgError> {
+        let to_mm = Length::MM_PER_INCH / PIXELS_PER_INCH;
+        let page = Rect::new(Point::new(0.0, 0.0), Point::new(self.size[0] * to_mm, self.size[1] * to_mm));
+        let page = fit.map_or(page, |fit| contained(self.size[0], self.size[1], fit));
+        let place = Placement { origin: page.min, scale: page.width() / self.size[0] };
+
+        let mut rings: BTreeMap<Option<usize>, Vec<Vec<Point>>> = BTreeMap::new();
+        for shape in self.selected(selection)?.into_iter().filter_map(|i| self.shapes.get(i)) {
+            // Each by its own rule; of what comes out, outlines run one way and holes the other, so that all of them
+            // together are their union.
+            rings.entry(shape.clip).or_default().extend(shape.rings(&place));
+        }
+        let mut clips = BTreeMap::new();
+        let mut seen = Vec::new();
+        for (clip, rings) in rings {
+            let region = Region::from_rings(rings, FillRule::NonZero);
+            seen.push(match clip {
+                Some(clip) => region.intersection(&self.clip(clip, &place, &mut clips)),
+                None => region,
+            });
+        }
+        let region = match seen.as_slice() {
+            [region] => region.clone(),
+            regions => {
+                let rings = regions.iter().flat_map(Region::polygons).flat_map(|polygon| polygon.rings().cloned());
+                Region::from_rings(rings.collect(), FillRule::NonZero)
+            }
+        };
+        if region.is_empty() { Err(SvgError::NotFilled) } else { Ok(region) }
+    }
+
+    /// The numbers of the shapes, in order and each once.
+    fn selected(&self, selection: Selection<'_>) -> Result<BTreeSet<usize>, SvgError> {
+        let known = |names: &BTreeMap<String, Vec<Range<usize>>>| names.keys().cloned().collect();
+        let ranges = match selection {
+            Selection::Whole => return Ok((0..self.shapes.len()).collect()),
+            Selection::Id(id) => {
+                self.ids.get(id).ok_or_else(|| SvgError::NoSuchId { id: id.into(), known: known(&self.ids) })?
+            }
+            Selection::Layer(layer) => self
+                .layers
+                .get(layer)
+                .ok_or_else(|| SvgError::NoSuchLayer { layer: layer.into(), known: known(&self.layers) })?,
+            Selection::Class(class) => self
+                .classes
+                .get(class)
+                .ok_or_else(|| SvgError::NoSuchClass { class: class.into(), known: known(&self.classes) })?,
+        };
+        // An element may lie within another of the same class.
+        Ok(ranges.iter().cloned().flatten().collect())
+    }
+
+    /// The area of a clip path and all those outside it. The ones found are kept in `found`.
+    fn clip(&self, clip: usize, place: &Placement, found: &mut BTreeMap<usize, Region>) -> Region {
+        // From this one outwards as far as is not known yet, and then back.
+        let mut chain = Vec::new();
+        let mut next = Some(clip);
+        while let Some(at) = next.filter(|at| !found.contains_key(at)) {
+            chain.push(at);
+            next = self.clips.get(at).and_then(|clip| clip.outer);
+        }
+        let mut outer = next.and_then(|at| found.get(&at).cloned());
+        while let Some(at) = chain.pop() {
+            let shapes = self.clips.get(at).map_or(&[][..], |clip| &clip.shapes);
+            let rings = shapes.iter().flat_map(|shape| shape.rings(place)).collect();
+            let own = Region::from_rings(rings, FillRule::NonZero);
+            let region = outer.map_or(own.clone(), |outer| own.intersection(&outer));
+            found.insert(at, region.clone());
+            outer = Some(region);
+        }
+        outer.unwrap_or_else(Region::empty)
+    }
+}
+
+/// Where the page of a file lies.
+struct Placement {
+    origin: Point,
+    /// Millimetres for a pixel.
+    scale: f64,
+}
+
+impl Shape {
+    /// Its area on the page as rings that do not cross.
+    fn rings(&self, place: &Placement) -> Vec<Vec<Point>> {
+        let at = |p: Point| place.origin + (p - Point::new(0.0, 0.0)) * place.scale;
+        let mut pen = Pen::default();
+        for step in &self.steps {
+            match *step {
+                Step::Move(p) => pen.move_to(at(p)),
+                Step::Line(p) => pen.line_to(at(p)),
+                Step::Quadratic(b, c) => pen.quadratic_to(at(b), at(c)),
+                Step::Cubic(b, c, d) => pen.cubic_to(at(b), at(c), at(d)),
+                Step::Close => pen.close(),
+            }
+        }
+        let snap = |v: f64| (v / SNAP).round() * SNAP;
+        let rings: Vec<Vec<Point>> = pen
+            .finish()
+            .into_iter()
+            .map(|subpath| subpath.points.into_iter().map(|p| Point::new(snap(p.x), snap(p.y))).collect())
+            .collect();
+        overlay::resolve(&rings, self.rule)
+            .into_iter()
+            .flat_map(|polygon| std::iter::once(polygon.outer).chain(polygon.holes))
+            .collect()
+    }
+}
