@@ -141,7 +141,7 @@ pub(super) fn call<'a>(
     let places = assign(cx, &what, &names, arguments);
     let mut given: Vec<Option<Given>> = signature.params.iter().map(|_| None).collect();
     let mut whole = true;
-    for (argument, place) in arguments.iter().zip(places) {
+    for (argument, place) in arguments.iter().zip(places.iter().copied()) {
         let slot = place.map_or(Slot::ANY, |place| signature.params[place].slot);
         let value = eval(cx, &argument.value, slot);
         let Some(place) = place else {
@@ -159,14 +159,17 @@ pub(super) fn call<'a>(
         whole &= !value.is_unknown();
         given[place] = Some(Given { value, span: argument.value.span });
     }
+    // An argument that no parameter takes is most likely a required one misspelt.
+    let misnamed = arguments.iter().zip(&places).any(|(argument, place)| argument.name.is_some() && place.is_none());
     for (param, value) in signature.params.iter().zip(&given) {
-        if param.need == Need::Required && value.is_none() {
+        if param.need == Need::Required && value.is_none() && !misnamed {
             let message = format!("{what} needs `{}`", param.name);
             let hint = takes(&what, &names);
             cx.report(Diagnostic::error(Code::Missing, span, message).maybe_hint(hint));
             whole = false;
         }
     }
+    whole &= !misnamed;
     if !whole || cx.is_dead() {
         return Value::Unknown(signature.result);
     }

@@ -42,6 +42,8 @@ pub(super) struct Cx<'a, 'c> {
     pub(super) naming: Vec<(String, u32)>,
     pub(super) images: BTreeMap<(String, &'static str), Option<Arc<Image>>>,
     pub(super) drawings: BTreeMap<String, Option<Rc<SvgFile>>>,
+    /// The tones whose properties are being evaluated, by where they are declared.
+    pub(super) tones: Vec<Span>,
     /// Dead branches that were checked already.
     pub(super) checked: BTreeSet<Span>,
     /// Calls of functions, tones and lazy values that are under way.
@@ -76,6 +78,7 @@ impl<'a, 'c> Cx<'a, 'c> {
             naming: Vec::new(),
             images: BTreeMap::new(),
             drawings: BTreeMap::new(),
+            tones: Vec::new(),
             checked: BTreeSet::new(),
             calls: 0,
             files: BTreeMap::new(),

@@ -458,6 +458,8 @@ pub(super) fn bind_arguments<'a>(
     let places = call::assign(cx, what, &names, arguments);
     let scope = Scope::inside(&cx.modules[module].scope);
     let mut whole = true;
+    // An argument that no parameter takes is most likely a required one misspelt.
+    let misnamed = arguments.iter().zip(&places).any(|(argument, place)| argument.name.is_some() && place.is_none());
     for argument in arguments.iter().zip(&places).filter(|(_, place)| place.is_none()).map(|(argument, _)| argument) {
         eval(cx, caller, &argument.value, Slot::of(Kind::Field));
     }
@@ -474,8 +476,11 @@ pub(super) fn bind_arguments<'a>(
             }
             (None, Some(default)) => expect(cx, &scope, default, pinned.map_or(Slot::ANY, Slot::of)),
             (None, None) => {
-                let message = format!("{what} needs `{}`", param.name.name);
-                cx.report(Diagnostic::error(Code::Missing, span, message).note(param.name.span, "declared here"));
+                if !misnamed {
+                    let message = format!("{what} needs `{}`", param.name.name);
+                    let diagnostic = Diagnostic::error(Code::Missing, span, message);
+                    cx.report(diagnostic.note(param.name.span, "declared here"));
+                }
                 whole = false;
                 Value::Unknown(pinned)
             }
@@ -671,7 +676,9 @@ fn matching<'a>(
     span: Span,
 ) -> Value {
     let value = eval(cx, scope, subject, Slot::ANY);
-    check_patterns(cx, scope, (subject, &value), arms, span);
+    if !check_patterns(cx, scope, (subject, &value), arms, span) {
+        return Value::UNKNOWN;
+    }
     if value.is_unknown() {
         let values: Vec<Value> = arms.iter().map(|arm| cx.dead(|cx| eval(cx, scope, &arm.value, slot))).collect();
         return common(values);
@@ -704,14 +711,15 @@ fn holds(pattern: &Pattern, value: &Value) -> bool {
     }
 }
 
-/// Patterns that can never match, match twice, or leave something uncovered whatever the value is.
+/// Reports patterns that can never match, match twice, or leave something uncovered; whether all is well.
 fn check_patterns(
     cx: &mut Cx<'_, '_>,
     scope: &Rc<Scope<'_>>,
     (subject, value): (&Expr, &Value),
     arms: &[ast::Arm],
     span: Span,
-) {
+) -> bool {
+    let mut sound = true;
     for (i, arm) in arms.iter().enumerate() {
         let expected = match arm.pattern {
             Pattern::Any => None,
@@ -725,14 +733,15 @@ fn check_patterns(
         {
             let message = format!("this matches {}, but the value is {}", expected.noun(), value.describe());
             cx.report(Diagnostic::error(Code::Type, arm.span, message));
+            sound = false;
         }
         if let Some(earlier) = arms[..i].iter().find(|earlier| earlier.pattern == arm.pattern || earlier.pattern == Pattern::Any) {
             let message = "an earlier arm takes everything that this one would";
             cx.report(Diagnostic::error(Code::Match, arm.span, message).note(earlier.span, "this one"));
         }
     }
-    if arms.iter().any(|arm| arm.pattern == Pattern::Any) {
-        return;
+    if !sound || arms.iter().any(|arm| arm.pattern == Pattern::Any) {
+        return sound;
     }
     let choices = match (&subject.kind, value.kind()) {
         (_, Some(Kind::Bool)) => vec![Value::Bool(true), Value::Bool(false)],
@@ -750,5 +759,7 @@ fn check_patterns(
             false => format!("the match does not cover {}", missed.join(", ")),
         };
         cx.report(Diagnostic::error(Code::Match, span, message).hint("a last arm `_ => …` covers the rest"));
+        return false;
     }
+    true
 }

@@ -83,19 +83,33 @@ pub(super) fn instantiate<'a>(
     if !cx.count_iteration(span) {
         return Value::Unknown(Some(Kind::Tone));
     }
-    let value = cx.nested(span, |cx| properties(cx, &scope, tone)).flatten();
+    let value = enter(cx, tone, span, &scope);
     value.map_or(Value::Unknown(Some(Kind::Tone)), |tone| Value::Tone(Rc::new(tone)))
 }
 
 /// Evaluates a tone that nothing may paint with, with unknown arguments.
 pub(super) fn check<'a>(cx: &mut Cx<'a, '_>, tone: Tone<'a>) {
     let scope = eval::unknown_arguments(cx, tone.module, tone.params);
-    let checked = cx.nested(tone.name.span, |cx| properties(cx, &scope, tone));
-    if let (Some(Some(tone)), ToneBody::Properties(_)) = (checked, tone.body)
+    let checked = enter(cx, tone, tone.name.span, &scope);
+    if let (Some(tone), ToneBody::Properties(_)) = (checked, tone.body)
         && !tone.broken
     {
         tone.check_pairs(cx);
     }
+}
+
+/// Evaluates a tone's properties, unless they are being evaluated already: a tone that derives from itself has none.
+fn enter<'a>(cx: &mut Cx<'a, '_>, tone: Tone<'a>, span: Span, scope: &Rc<Scope<'a>>) -> Option<ToneValue> {
+    let key = tone.name.span;
+    if cx.tones.contains(&key) {
+        let message = format!("the tone `{}` derives from itself", tone.name.name);
+        cx.report(Diagnostic::error(Code::Cycle, key, message).label("this leads back to it"));
+        return None;
+    }
+    cx.tones.push(key);
+    let value = cx.nested(span, |cx| properties(cx, scope, tone)).flatten();
+    cx.tones.pop();
+    value
 }
 
 fn properties<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, tone: Tone<'a>) -> Option<ToneValue> {
