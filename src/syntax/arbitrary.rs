@@ -90,8 +90,8 @@ pub(super) fn expr() -> BoxedStrategy<Expr> {
     leaf.prop_recursive(3, 10, 3, |inner| whole(primary(inner.boxed()))).boxed()
 }
 
-/// What may stand before a block: there the first brace opens the block, so that one in a value needs brackets.
-fn head() -> BoxedStrategy<Expr> {
+/// What a tone derives from: the first brace that belongs to no match opens its block, so that a record needs brackets.
+fn base() -> BoxedStrategy<Expr> {
     let bracket = |expr: Expr| {
         if super::format::expression(&expr).contains('{') { make(ExprKind::Group(Box::new(expr))) } else { expr }
     };
@@ -151,16 +151,19 @@ fn undocumented(expr: BoxedStrategy<Expr>) -> BoxedStrategy<Expr> {
 /// Operators around primaries, each kind only where it needs no brackets.
 fn whole(primary: BoxedStrategy<Expr>) -> BoxedStrategy<Expr> {
     let power = chain(primary, &[BinaryOp::Power], 2);
-    let prefix = select(vec![UnaryOp::Minus, UnaryOp::Not]);
-    let unary = prop_oneof![
-        4 => power.clone(),
-        1 => (vec(prefix, 1..3), power)
-            .prop_map(|(operators, operand)| make(ExprKind::Unary(operators, Box::new(operand)))),
-    ]
-    .boxed();
+    let prefixed = |operator: UnaryOp, operand: BoxedStrategy<Expr>| {
+        prop_oneof![
+            4 => operand.clone(),
+            1 => (1..3usize, operand)
+                .prop_map(move |(count, operand)| make(ExprKind::Unary(vec![operator; count], Box::new(operand)))),
+        ]
+        .boxed()
+    };
+    let unary = prefixed(UnaryOp::Minus, power);
     let products = [BinaryOp::Multiply, BinaryOp::Divide, BinaryOp::Remainder, BinaryOp::Intersect];
     let sum = chain(chain(unary, &products, 2), &[BinaryOp::Add, BinaryOp::Subtract], 3);
     let comparison = chain(sum, &[BinaryOp::Equal, BinaryOp::Less, BinaryOp::GreaterEqual], 1);
+    let comparison = prefixed(UnaryOp::Not, comparison);
     let or = chain(chain(comparison, &[BinaryOp::And], 2), &[BinaryOp::Or], 2);
     let branches = vec((or.clone(), or.clone()), 1..3);
     prop_oneof![
@@ -196,7 +199,7 @@ fn with_doc(kind: BoxedStrategy<StatementKind>) -> BoxedStrategy<Statement> {
 fn declaration() -> BoxedStrategy<StatementKind> {
     let body = prop_oneof![
         properties(expr()).prop_map(ToneBody::Properties),
-        (head(), properties(expr())).prop_map(|(base, with)| ToneBody::Derived { base, with }),
+        (base(), properties(expr())).prop_map(|(base, with)| ToneBody::Derived { base, with }),
     ];
     let path = "[a-z\"\\\\{é ]{0,6}".prop_map(|value| Text { value, span: span() });
     prop_oneof![
@@ -237,13 +240,13 @@ fn drawing() -> BoxedStrategy<StatementKind> {
         let statement = with_doc(prop_oneof![4 => inner, 1 => local, 1 => declaration()].boxed());
         let body = vec(statement, 0..3).boxed();
         prop_oneof![
-            (head(), of(head()), body.clone()).prop_map(|(name, ink, body)| StatementKind::Layer { name, ink, body }),
-            (name(), head(), body.clone()).prop_map(|(name, iterable, body)| StatementKind::For {
+            (expr(), of(expr()), body.clone()).prop_map(|(name, ink, body)| StatementKind::Layer { name, ink, body }),
+            (name(), expr(), body.clone()).prop_map(|(name, iterable, body)| StatementKind::For {
                 variable: ident(name),
                 iterable,
                 body
             }),
-            (vec((head(), body.clone()), 1..3), of(body))
+            (vec((expr(), body.clone()), 1..3), of(body))
                 .prop_map(|(branches, otherwise)| StatementKind::If { branches, otherwise }),
         ]
     })
