@@ -4,6 +4,8 @@
 //! libraries to a scene without errors. Blocks marked `toml` that draw are compiled as TOML. Blocks marked
 //! `kake,fragment` are left alone.
 
+#![allow(clippy::panic)]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
