@@ -103,7 +103,5 @@ fn stage_5_draw(bencher: Bencher<'_, '_>, tiles: u32) {
 fn stage_6_svg(bencher: Bencher<'_, '_>, tiles: u32) {
     let (canvas, paint) = scene(tiles);
     let drawing = drawing(&canvas, &paint, &stages(&canvas, &paint));
-    bencher
-        .counter(ItemsCount::new(tiles))
-        .bench(|| kakeami::back::svg::write(&drawing, None, &mut std::io::sink()));
+    bencher.counter(ItemsCount::new(tiles)).bench(|| kakeami::back::svg::write(&drawing, None, &mut std::io::sink()));
 }

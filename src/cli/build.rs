@@ -227,7 +227,8 @@ fn check_pixels(compiled: &mut Compiled, limits: &Limits) {
     if pixels <= most {
         return;
     }
-    let message = format!("the PNG would have {width} x {height} pixels; the limit is {} megapixels", limits.megapixels);
+    let message =
+        format!("the PNG would have {width} x {height} pixels; the limit is {} megapixels", limits.megapixels);
     let diagnostic = match compiled.lowered.canvas_span {
         Some(span) => Diagnostic::error(Code::Limit, span, message),
         None => Diagnostic::without_span(Code::Limit, message),
@@ -238,12 +239,7 @@ fn check_pixels(compiled: &mut Compiled, limits: &Limits) {
 }
 
 /// Writes one output beside its place; standard output is written at once.
-fn write(
-    drawing: &Drawing,
-    metadata: Option<&Metadata>,
-    kind: Kind,
-    target: &Path,
-) -> io::Result<Option<Pending>> {
+fn write(drawing: &Drawing, metadata: Option<&Metadata>, kind: Kind, target: &Path) -> io::Result<Option<Pending>> {
     let fill = |out: &mut dyn Write| match kind {
         Kind::Svg => svg::write(drawing, metadata, out),
         Kind::Json => json::write(drawing, out),

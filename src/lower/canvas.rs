@@ -33,9 +33,8 @@ const SHEETS: [(&str, f64, f64); 14] = [
     ("letter", 215.9, 279.4),
     ("tabloid", 279.4, 431.8),
 ];
-const SHEET_NAMES: &[&str] = &[
-    "a0", "a1", "a2", "a3", "a4", "a5", "a6", "b4", "b5", "jis_b4", "jis_b5", "legal", "letter", "tabloid",
-];
+const SHEET_NAMES: &[&str] =
+    &["a0", "a1", "a2", "a3", "a4", "a5", "a6", "b4", "b5", "jis_b4", "jis_b5", "legal", "letter", "tabloid"];
 
 const PROPERTIES: [&str; 7] = ["size", "dpi", "pixels", "paper", "ink", "depth", "unit"];
 const LATER: [&str; 3] = ["bleed", "gain", "repeat"];

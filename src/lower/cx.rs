@@ -13,8 +13,8 @@ use crate::region::svg::SvgFile;
 use crate::span::{SourceId, Span};
 
 use super::LowerConfig;
-use super::params;
 use super::modules::Module;
+use super::params;
 use super::value::Value;
 
 /// How deep evaluation may go before the stack is at risk. The thread that lowers has room for it.
@@ -147,10 +147,9 @@ impl<'a, 'c> Cx<'a, 'c> {
         let limit = self.config.limits.nesting;
         if u64::from(self.calls) >= limit {
             let message = format!("calls are nested more than {limit} deep");
-            self.report(
-                Diagnostic::error(Code::Recursion, span, message)
-                    .hint("a function that calls itself needs a condition that ends it; `--limit nesting=N` lifts the limit"),
-            );
+            self.report(Diagnostic::error(Code::Recursion, span, message).hint(
+                "a function that calls itself needs a condition that ends it; `--limit nesting=N` lifts the limit",
+            ));
             return None;
         }
         self.calls += 1;

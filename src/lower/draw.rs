@@ -214,7 +214,8 @@ fn repeat<'a>(
         }
         Value::Range(ends) => {
             let (Value::Number(low), Value::Number(high)) = &**ends else {
-                let message = format!("a loop counts in whole numbers, not from {} to {}", ends.0.text(), ends.1.text());
+                let message =
+                    format!("a loop counts in whole numbers, not from {} to {}", ends.0.text(), ends.1.text());
                 cx.report_value(Diagnostic::error(Code::Type, iterable.span, message));
                 return;
             };

@@ -216,19 +216,16 @@ pub(super) fn force<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, 
         }
         Binding::Lazy(binding, declared) => {
             scope.set(name, Binding::Busy);
-            let value = cx.declared(span, scope.parent().is_none(), |cx| bind(cx, scope, binding, declared)).unwrap_or(Value::UNKNOWN);
+            let value = cx
+                .declared(span, scope.parent().is_none(), |cx| bind(cx, scope, binding, declared))
+                .unwrap_or(Value::UNKNOWN);
             scope.set(name, Binding::Value(value.clone()));
             value
         }
     }
 }
 
-fn bind<'a>(
-    cx: &mut Cx<'a, '_>,
-    scope: &Rc<Scope<'a>>,
-    binding: &'a ast::Binding,
-    declared: Declared<'a>,
-) -> Value {
+fn bind<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, binding: &'a ast::Binding, declared: Declared<'a>) -> Value {
     let pinned = binding.ty.as_ref().and_then(|ty| named_kind(cx, ty));
     let slot = match (pinned, declared) {
         (Some(kind), _) => Slot::of(kind),
@@ -420,11 +417,7 @@ pub(super) fn check_function<'a>(cx: &mut Cx<'a, '_>, function: Function<'a>) {
 }
 
 /// A scope in which the parameters have their defaults, or are unknown.
-pub(super) fn unknown_arguments<'a>(
-    cx: &mut Cx<'a, '_>,
-    module: usize,
-    params: &'a [ast::Parameter],
-) -> Rc<Scope<'a>> {
+pub(super) fn unknown_arguments<'a>(cx: &mut Cx<'a, '_>, module: usize, params: &'a [ast::Parameter]) -> Rc<Scope<'a>> {
     let scope = Scope::inside(&cx.modules[module].scope);
     for param in params {
         let kind = param.ty.as_ref().and_then(|ty| named_kind(cx, ty));
@@ -531,7 +524,8 @@ fn range<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, low: &'a Expr, high: &'
         Some(_) if percent => Value::Range(Rc::new(ends)),
         Some((a, b)) if a.number().is_some() && b.number().is_some() => Value::Range(Rc::new((a, b))),
         _ => {
-            let message = format!("a range goes from number to number, not {} to {}", ends.0.describe(), ends.1.describe());
+            let message =
+                format!("a range goes from number to number, not {} to {}", ends.0.describe(), ends.1.describe());
             cx.report(Diagnostic::error(Code::Type, low.span.to(high.span), message));
             Value::Unknown(Some(Kind::Range))
         }
@@ -735,7 +729,9 @@ fn check_patterns(
             cx.report(Diagnostic::error(Code::Type, arm.span, message));
             sound = false;
         }
-        if let Some(earlier) = arms[..i].iter().find(|earlier| earlier.pattern == arm.pattern || earlier.pattern == Pattern::Any) {
+        if let Some(earlier) =
+            arms[..i].iter().find(|earlier| earlier.pattern == arm.pattern || earlier.pattern == Pattern::Any)
+        {
             let message = "an earlier arm takes everything that this one would";
             cx.report(Diagnostic::error(Code::Match, arm.span, message).note(earlier.span, "this one"));
         }
@@ -748,11 +744,8 @@ fn check_patterns(
         (ExprKind::Name(name), _) => cx.choices.get(&(scope.module, name.clone())).cloned().unwrap_or_default(),
         _ => Vec::new(),
     };
-    let missed: Vec<String> = choices
-        .iter()
-        .filter(|choice| !arms.iter().any(|arm| holds(&arm.pattern, choice)))
-        .map(Value::text)
-        .collect();
+    let missed: Vec<String> =
+        choices.iter().filter(|choice| !arms.iter().any(|arm| holds(&arm.pattern, choice))).map(Value::text).collect();
     if choices.is_empty() || !missed.is_empty() {
         let message = match missed.is_empty() {
             true => "the match does not cover every value".to_owned(),

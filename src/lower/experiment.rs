@@ -35,12 +35,7 @@ pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Vec<Experiment> {
     experiments
 }
 
-fn one<'a>(
-    cx: &mut Cx<'a, '_>,
-    scope: &Rc<Scope<'a>>,
-    name: &Ident,
-    properties: &'a [Property],
-) -> Option<Experiment> {
+fn one<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &Ident, properties: &'a [Property]) -> Option<Experiment> {
     let mut experiment = Experiment {
         name: name.name.clone(),
         seeds: [0, 0],
@@ -140,10 +135,8 @@ fn factors<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, property: &'a Propert
             cx.report(Diagnostic::error(Code::Range, member.span, message).label("an empty list"));
             continue;
         }
-        let levels: Vec<ParamValue> = levels
-            .into_iter()
-            .filter_map(|level| params::level(cx, &member.name, level, member.span))
-            .collect();
+        let levels: Vec<ParamValue> =
+            levels.into_iter().filter_map(|level| params::level(cx, &member.name, level, member.span)).collect();
         factors.push(Factor { param: member.name.clone(), levels });
     }
     factors

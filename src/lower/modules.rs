@@ -65,7 +65,8 @@ pub(super) fn read(
     sources: &mut Sources,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Vec<File> {
-    let mut reader = Reader { loader, sources, diagnostics, files: Vec::new(), known: BTreeMap::new(), open: Vec::new() };
+    let mut reader =
+        Reader { loader, sources, diagnostics, files: Vec::new(), known: BTreeMap::new(), open: Vec::new() };
     reader.read(path, None);
     reader.files
 }
@@ -255,10 +256,7 @@ fn declare_one<'a>(index: usize, file: &'a File, diagnostics: &mut Vec<Diagnosti
 }
 
 /// Puts a `let`, `param`, `field` or `region` into a scope; name and earlier place where it is there already.
-pub(super) fn declare_binding<'a>(
-    statement: &'a StatementKind,
-    scope: &Scope<'a>,
-) -> Option<(&'a ast::Ident, Span)> {
+pub(super) fn declare_binding<'a>(statement: &'a StatementKind, scope: &Scope<'a>) -> Option<(&'a ast::Ident, Span)> {
     let (binding, declared) = match statement {
         StatementKind::Let(binding) => (binding, Declared::Let),
         StatementKind::Field(binding) => (binding, Declared::Field),
@@ -278,13 +276,7 @@ pub(super) fn declared_twice(name: &ast::Ident, earlier: Span) -> Diagnostic {
 }
 
 /// Reports names that an import without `as` brings in although they are there already.
-fn clashes(
-    modules: &[Module<'_>],
-    index: usize,
-    imported: usize,
-    import: Span,
-    diagnostics: &mut Vec<Diagnostic>,
-) {
+fn clashes(modules: &[Module<'_>], index: usize, imported: usize, import: Span, diagnostics: &mut Vec<Diagnostic>) {
     let visible = std::iter::once(index).chain(modules[index].opened.iter().copied());
     let new = &modules[imported];
     for other in visible {

@@ -29,11 +29,7 @@ pub(super) struct Set {
 }
 
 /// Reads the values that were set.
-pub(super) fn parse_sets(
-    config: &LowerConfig,
-    sources: &mut Sources,
-    diagnostics: &mut Vec<Diagnostic>,
-) -> Vec<Set> {
+pub(super) fn parse_sets(config: &LowerConfig, sources: &mut Sources, diagnostics: &mut Vec<Diagnostic>) -> Vec<Set> {
     let mut sets: Vec<Set> = Vec::with_capacity(config.sets.len());
     for (name, text) in &config.sets {
         let source = sources.add(format!("--set {name}"), text.as_str(), Syntax::Kake);
@@ -72,15 +68,16 @@ pub(super) fn apply<'a>(cx: &mut Cx<'a, '_>, sets: &'a [Set]) {
     for set in sets {
         let Some((module, _, name)) = known.iter().find(|(_, full, _)| *full == set.name) else {
             let message = format!("the scene has no parameter `{}`", set.name);
-            let hint = did_you_mean(&set.name, known.iter().map(|(_, full, _)| full.as_str())).unwrap_or_else(|| {
-                match known.is_empty() {
+            let hint =
+                did_you_mean(&set.name, known.iter().map(|(_, full, _)| full.as_str())).unwrap_or_else(|| match known
+                    .is_empty()
+                {
                     true => "it declares none: `param name = value`".to_owned(),
                     false => {
                         let names: Vec<_> = known.iter().map(|(_, full, _)| format!("`{full}`")).collect();
                         format!("its parameters are {}", names.join(", "))
                     }
-                }
-            });
+                });
             cx.report(Diagnostic::error(Code::Param, set.span, message).hint(hint));
             continue;
         };

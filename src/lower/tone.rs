@@ -123,12 +123,7 @@ fn properties<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, tone: Tone<'a>) ->
             let base = match expect_tone(cx, scope, base) {
                 Value::Tone(base) => (*base).clone(),
                 // The base is unknown or broken, but what differs can be looked at all the same.
-                _ => ToneValue {
-                    name: String::new(),
-                    declared: tone.name.span,
-                    properties: Vec::new(),
-                    broken: true,
-                },
+                _ => ToneValue { name: String::new(), declared: tone.name.span, properties: Vec::new(), broken: true },
             };
             (base, with)
         }
@@ -377,9 +372,7 @@ impl ToneValue {
 
     fn ground(&self) -> Option<Ground> {
         match &self.get("ground")?.value {
-            Value::Fill(fill) => {
-                Some(Ground::Fill { fill: (**fill).clone(), angle: Angle::degrees(GROUND_DEGREES) })
-            }
+            Value::Fill(fill) => Some(Ground::Fill { fill: (**fill).clone(), angle: Angle::degrees(GROUND_DEGREES) }),
             Value::Word(_) => Some(Ground::Nearest),
             _ => None,
         }

@@ -49,11 +49,7 @@ pub(super) const SIGNATURES: &[Signature] = &[
     Signature {
         name: "noise",
         result: Some(Kind::Field),
-        params: &[
-            required("scale", Slot::of(Kind::Length)),
-            optional("seed", NUMBER),
-            optional("octaves", NUMBER),
-        ],
+        params: &[required("scale", Slot::of(Kind::Length)), optional("seed", NUMBER), optional("octaves", NUMBER)],
         build: noise,
     },
     Signature {

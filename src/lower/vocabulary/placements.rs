@@ -141,10 +141,9 @@ fn grid(call: &mut Call<'_, '_, '_>) -> Option<Value> {
     let cells = (call.has("columns"), call.has("rows"));
     let size = match (call.has("spacing"), cells) {
         (true, (false, false)) => GridSize::Spacing(call.positive("spacing", None)?),
-        (false, (true, true)) => GridSize::Cells {
-            columns: call.whole("columns", 1, MANY, None)?,
-            rows: call.whole("rows", 1, MANY, None)?,
-        },
+        (false, (true, true)) => {
+            GridSize::Cells { columns: call.whole("columns", 1, MANY, None)?, rows: call.whole("rows", 1, MANY, None)? }
+        }
         (true, _) => {
             let message = "`grid` takes `spacing`, or `columns` and `rows`, not both";
             call.cx.report(Diagnostic::error(Code::Duplicate, call.span, message));

@@ -52,12 +52,7 @@ pub(super) const SIGNATURES: &[Signature] = &[
         params: &[required("corners", Slot::of(Kind::List))],
         build: polygon,
     },
-    Signature {
-        name: "path",
-        result: Some(Kind::Region),
-        params: &[required("data", STRING)],
-        build: path,
-    },
+    Signature { name: "path", result: Some(Kind::Region), params: &[required("data", STRING)], build: path },
     Signature {
         name: "svg",
         result: Some(Kind::Region),
