@@ -146,8 +146,8 @@ fn draw(
         }
     }
     if items.is_empty() {
-        let message = "the scene declares tones and such, but paints nothing";
-        let hint = "import it from a scene with a `paint REGION with TONE` statement";
+        let message = "the scene paints nothing";
+        let hint = "a scene has a `paint REGION with TONE` statement; one with tones alone is a library to import";
         diagnostics.push(Diagnostic::without_span(Code::Empty, message).hint(hint));
         return None;
     }

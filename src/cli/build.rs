@@ -164,6 +164,11 @@ fn build(arguments: &BuildArgs, opened: &Opened, outputs: &[(PathBuf, Kind)], se
         check_pixels(&mut compiled, &config.lower.limits);
     }
     let ended = report::diagnostics(&compiled.lowered.diagnostics, &compiled.lowered.sources);
+    let missing = |diagnostic: &Diagnostic| matches!(diagnostic.code, Code::File | Code::Import);
+    if opened.picture.is_some() && compiled.lowered.diagnostics.iter().any(missing) {
+        eprintln!("kake: the picture holds its scene, but not every file that the scene reads");
+        eprintln!("kake: name the folder they lie in by `--root DIR`, or build pictures with `--embed all`");
+    }
     let Some(drawing) = &compiled.drawing else { return ended };
     if ended != Ended::Done {
         return ended;

@@ -6,7 +6,7 @@ use crate::region::Region;
 use crate::span::Span;
 use crate::syntax::ast;
 
-use super::convert::{Slot, coerce};
+use super::convert::{Slot, coerce, spelling};
 use super::cx::Cx;
 use super::value::{FieldUnit, Kind, TypedField, Value};
 use crate::field::Field;
@@ -73,7 +73,7 @@ pub(super) fn assign(
         let span = argument.name.as_ref().map_or(argument.value.span, |name| name.span);
         let place = match &argument.name {
             Some(name) => {
-                let place = names.iter().position(|known| *known == name.name);
+                let place = names.iter().position(|known| spelling(known) == spelling(&name.name));
                 if place.is_none() {
                     let message = format!("{what} has no argument `{}`", name.name);
                     let hint = did_you_mean(&name.name, names.iter().copied()).or_else(|| takes(what, names));

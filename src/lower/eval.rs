@@ -8,7 +8,7 @@ use crate::scene::Colour;
 use crate::span::Span;
 use crate::syntax::ast::{self, Argument, Expr, ExprKind, Pattern, StringPart, Unit};
 
-use super::convert::{Slot, coerce};
+use super::convert::{self, Slot, coerce};
 use super::cx::Cx;
 use super::modules::Function;
 use super::scope::{Binding, Declared, Scope};
@@ -135,7 +135,7 @@ fn name<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span: Span, 
     if let Some(value) = lookup(cx, scope, name, span) {
         return value;
     }
-    if let Some(word) = slot.words.iter().find(|word| **word == name) {
+    if let Some(word) = slot.words.iter().find(|word| **word == convert::spelling(name)) {
         return Value::Word(word);
     }
     if slot.kind == Some(Kind::Tone)
@@ -165,6 +165,9 @@ fn name_hint<'a>(cx: &Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, slot: Slot)
     let module = &cx.modules[scope.module];
     if module.aliases.contains_key(name) {
         return Some(format!("`{name}` is a module: `{name}.something`"));
+    }
+    if slot.kind == Some(Kind::String) {
+        return Some(format!("a string is written in quotes: `\"{name}\"`"));
     }
     let mut known: Vec<&str> = slot.words.to_vec();
     known.extend(visible(cx, scope));
@@ -315,7 +318,7 @@ fn call<'a>(
     match &callee.kind {
         ExprKind::Name(name) => {
             if let Some(function) = find_function(cx, scope.module, name) {
-                return call_function(cx, scope, function, arguments, span);
+                return call_function(cx, scope, function, (arguments, span), slot);
             }
             if slot.kind == Some(Kind::Tone)
                 && let Some(tone) = tone::find(cx, scope.module, name)
@@ -329,7 +332,7 @@ fn call<'a>(
                     eval(cx, scope, expr, if slot.kind.is_none() { around } else { slot })
                 });
             }
-            unknown_call(cx, scope, name, callee.span);
+            unknown_call(cx, scope, name, callee.span, slot);
         }
         ExprKind::Member(base, member) => {
             let Some(module) = module_of(cx, scope, base) else {
@@ -338,7 +341,7 @@ fn call<'a>(
             };
             let modules = cx.modules;
             if let Some(&function) = modules[module].functions.get(member.name.as_str()) {
-                return call_function(cx, scope, function, arguments, span);
+                return call_function(cx, scope, function, (arguments, span), slot);
             }
             if let Some(&tone) = modules[module].tones.get(member.name.as_str()) {
                 return tone::instantiate(cx, scope, tone, arguments, span);
@@ -368,7 +371,7 @@ fn check_arguments<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, arguments: &'
     }
 }
 
-fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span: Span) {
+fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span: Span, slot: Slot) {
     if vocabulary::is_later(name) {
         cx.report(call::not_yet(name, span));
         return;
@@ -377,12 +380,18 @@ fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span
     let module = &modules[scope.module];
     let mut known: Vec<&str> = module.functions.keys().copied().collect();
     known.extend(module.opened.iter().flat_map(|&opened| modules[opened].functions.keys().copied()));
-    for callable in vocabulary::callables() {
-        known.push(callable);
+    // What fits the place comes first: a misspelt shape is no square root.
+    let fitting = vocabulary::fitting(slot);
+    match fitting.is_empty() {
+        true => vocabulary::callables().for_each(|callable| known.push(callable)),
+        false => fitting.iter().for_each(|callable| known.push(callable)),
     }
     let hint = match tone::find(cx, scope.module, name) {
         Some(_) => Some(format!("`{name}` is a tone: `paint REGION with {name}(…)`")),
-        None => did_you_mean(name, known),
+        None => did_you_mean(name, known).or_else(|| {
+            let names: Vec<_> = fitting.iter().map(|name| format!("`{name}`")).collect();
+            slot.kind.filter(|_| !names.is_empty()).map(|kind| format!("{} is one of {}", kind.noun(), names.join(", ")))
+        }),
     };
     let message = format!("there is nothing called `{name}`");
     cx.report(Diagnostic::error(Code::UnknownFunction, span, message).maybe_hint(hint));
@@ -398,11 +407,11 @@ fn call_function<'a>(
     cx: &mut Cx<'a, '_>,
     scope: &Rc<Scope<'a>>,
     function: Function<'a>,
-    arguments: &'a [Argument],
-    span: Span,
+    (arguments, span): (&'a [Argument], Span),
+    slot: Slot,
 ) -> Value {
     let what = format!("`{}`", function.name.name);
-    let inner = bind_arguments(cx, scope, &what, (function.module, function.params), arguments, span);
+    let inner = bind_arguments(cx, (scope, operand_slot(slot)), &what, (function.module, function.params), arguments, span);
     let Some(inner) = inner else { return Value::UNKNOWN };
     if cx.is_dead() || !cx.count_iteration(span) {
         return Value::UNKNOWN;
@@ -437,11 +446,11 @@ fn declare_param<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, param: &'a ast:
     }
 }
 
-/// A scope with the parameters of a function or tone bound to arguments that are evaluated in the caller's scope.
-/// `None` where one is missing, which was reported.
+/// A scope with the parameters of a function or tone bound to arguments that are evaluated in the caller's scope; where
+/// a parameter takes anything, the names of the caller's place are known, as in `f(x)` in a field. `None` where one is missing, which was reported.
 pub(super) fn bind_arguments<'a>(
     cx: &mut Cx<'a, '_>,
-    caller: &Rc<Scope<'a>>,
+    (caller, around): (&Rc<Scope<'a>>, Slot),
     what: &str,
     (module, params): (usize, &'a [ast::Parameter]),
     arguments: &'a [Argument],
@@ -465,7 +474,10 @@ pub(super) fn bind_arguments<'a>(
                     (None, Some(default)) => eval(cx, &scope, default, Slot::ANY).kind(),
                     (pinned, _) => pinned,
                 };
-                expect(cx, caller, given, kind.map_or(Slot::ANY, Slot::of))
+                match kind {
+                    Some(kind) => expect(cx, caller, given, Slot::of(kind)),
+                    None => eval(cx, caller, given, around),
+                }
             }
             (None, Some(default)) => expect(cx, &scope, default, pinned.map_or(Slot::ANY, Slot::of)),
             (None, None) => {

@@ -78,7 +78,7 @@ pub(super) fn instantiate<'a>(
     span: Span,
 ) -> Value {
     let what = format!("`{}`", tone.name.name);
-    let scope = eval::bind_arguments(cx, caller, &what, (tone.module, tone.params), arguments, span);
+    let scope = eval::bind_arguments(cx, (caller, Slot::ANY), &what, (tone.module, tone.params), arguments, span);
     let Some(scope) = scope else { return Value::Unknown(Some(Kind::Tone)) };
     if !cx.count_iteration(span) {
         return Value::Unknown(Some(Kind::Tone));
@@ -237,7 +237,14 @@ impl ToneValue {
             cx.report_value(Diagnostic::error(Code::Range, span, "the list of fills is empty"));
             return Value::Unknown(Some(Kind::Fill));
         }
-        Value::List(members.iter().map(|member| coerce(cx, member.clone(), Slot::of(Kind::Fill), span)).collect())
+        let mut fills = Vec::with_capacity(members.len());
+        for member in members.iter() {
+            match coerce(cx, member.clone(), Slot::of(Kind::Fill), span) {
+                Value::List(inner) => fills.extend(inner.iter().cloned()),
+                fill => fills.push(fill),
+            }
+        }
+        Value::List(fills.into())
     }
 
     fn held_to_range(&self, cx: &mut Cx<'_, '_>, name: &str, value: Value, span: Span) -> Value {
