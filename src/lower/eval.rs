@@ -390,7 +390,9 @@ fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span
         Some(_) => Some(format!("`{name}` is a tone: `paint REGION with {name}(…)`")),
         None => did_you_mean(name, known).or_else(|| {
             let names: Vec<_> = fitting.iter().map(|name| format!("`{name}`")).collect();
-            slot.kind.filter(|_| !names.is_empty()).map(|kind| format!("{} is one of {}", kind.noun(), names.join(", ")))
+            slot.kind
+                .filter(|_| !names.is_empty())
+                .map(|kind| format!("{} is one of {}", kind.noun(), names.join(", ")))
         }),
     };
     let message = format!("there is nothing called `{name}`");
@@ -411,7 +413,8 @@ fn call_function<'a>(
     slot: Slot,
 ) -> Value {
     let what = format!("`{}`", function.name.name);
-    let inner = bind_arguments(cx, (scope, operand_slot(slot)), &what, (function.module, function.params), arguments, span);
+    let inner =
+        bind_arguments(cx, (scope, operand_slot(slot)), &what, (function.module, function.params), arguments, span);
     let Some(inner) = inner else { return Value::UNKNOWN };
     if cx.is_dead() || !cx.count_iteration(span) {
         return Value::UNKNOWN;
