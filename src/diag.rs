@@ -114,7 +114,7 @@ impl Diagnostic {
 /// Puts diagnostics in the order of their places (sources in the order they were read), those without one first, and
 /// drops repeated ones.
 pub fn sort(diagnostics: &mut Vec<Diagnostic>) {
-    diagnostics.sort_by(|a, b| (a.span, a.severity, a.code).cmp(&(b.span, b.severity, b.code)));
+    diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.severity, diagnostic.code));
     diagnostics.dedup();
 }
 

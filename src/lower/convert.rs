@@ -64,7 +64,7 @@ pub(super) fn coerce(cx: &mut Cx<'_, '_>, value: Value, slot: Slot, span: Span) 
     if let Value::Unknown(from) = value {
         if let Some(from) = from
             && !may_become(from, kind)
-            && !(from == Kind::String && !slot.words.is_empty())
+            && (from != Kind::String || slot.words.is_empty())
         {
             mismatch(cx, from.noun(), slot, span, None);
         }

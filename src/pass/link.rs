@@ -4,7 +4,7 @@
 
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
-use crate::geom::{Point, Vec2};
+use crate::geom::{Point, Rect, Vec2};
 use crate::scene::Link;
 use crate::stage::{Graph, Sites};
 
@@ -23,34 +23,41 @@ pub fn link(sites: &Sites, link: Link) -> Graph {
 /// site of least index, so that lattices look the same everywhere and on every machine. Of sites that lie in one place
 /// only the first is linked. Sites on one line are linked along it.
 fn delaunay(points: &[Point]) -> Graph {
-    if let Some(edges) = links_along_line(points) {
-        return Graph::new(points.len(), &edges, Vec::new());
-    }
+    let corners = match widest_triangle(points) {
+        Ok(corners) => corners,
+        Err(line) => return Graph::new(points.len(), &line, Vec::new()),
+    };
     let all: Vec<u32> = (0..points.len() as u32).collect();
-    let mut triangulation = triangulate(points, &all);
+    let mut triangulation = triangulate(points, &all, corners);
     if triangulation.num_vertices() < points.len() {
-        triangulation = triangulate(points, &without_repeats(points));
+        // Which of several sites in one place spade keeps depends on the order, so only the first is offered again.
+        let sites = without_repeats(points);
+        triangulation = triangulate(points, &sites, corners);
     }
     let mut edges = Vec::with_capacity(triangulation.num_undirected_edges());
     let mut triangles = Vec::with_capacity(triangulation.num_inner_faces());
     // For every edge whether it merely halves a polygon of sites on one circle.
-    let tied: Vec<bool> = triangulation.undirected_edges().map(|edge| is_tied(edge.as_directed())).collect();
-    for (edge, &tied) in triangulation.undirected_edges().zip(&tied) {
-        if !tied {
+    let mut tied = vec![false; triangulation.num_undirected_edges()];
+    for edge in triangulation.undirected_edges() {
+        if is_tied(edge.as_directed()) {
+            tied[edge.index()] = true;
+        } else {
             edges.push(edge.vertices().map(|vertex| vertex.data().site));
         }
     }
     let mut polygon = Vec::new();
     let mut seen = vec![false; triangulation.num_all_faces()];
     for face in triangulation.inner_faces() {
-        // Polygons are walked along their outline, so from a face that has a part in it.
-        let Some(start) = face.adjacent_edges().into_iter().find(|edge| !tied[edge.as_undirected().index()]) else {
-            continue;
-        };
-        if seen[face.index()] {
+        let sides = face.adjacent_edges();
+        polygon.clear();
+        if sides.iter().all(|edge| !tied[edge.as_undirected().index()]) {
+            polygon.extend(sides.map(|edge| edge.from().data().site));
+            cut(&mut polygon, &mut triangles, &mut edges);
             continue;
         }
-        polygon.clear();
+        // Greater polygons are walked along their outline, so from a face that has a part in it.
+        let start = sides.into_iter().find(|edge| !tied[edge.as_undirected().index()]);
+        let Some(start) = start.filter(|_| !seen[face.index()]) else { continue };
         let mut edge = start;
         loop {
             polygon.push(edge.from().data().site);
@@ -120,15 +127,66 @@ impl HasPosition for Vertex {
     }
 }
 
-/// Triangulates those of the points that are named.
-fn triangulate(points: &[Point], sites: &[u32]) -> DelaunayTriangulation<Vertex> {
-    let vertices = sites.iter().map(|&site| {
+/// Triangulates those of the points that are named; they do not all lie on one line.
+///
+/// They are inserted one by one, in rounds of twice as many each, and along a Hilbert curve within a round, so that each
+/// is found from the one before (the biased randomized insertion order of Amenta, Choi and Rote, SoCG 2003). Spade's own
+/// bulk loading is a little faster on evenly spread sites, but takes quadratic time where most lie on a line, and its
+/// stable variant keeps vertices that it puts off in a hash set, so that a tie could turn out otherwise from run to run.
+fn triangulate(points: &[Point], sites: &[u32], corners: [u32; 3]) -> DelaunayTriangulation<Vertex> {
+    let bounds = sites.iter().fold(Rect::EMPTY, |bounds, &site| bounds.including(points[site as usize]));
+    let scale = f64::from(u16::MAX) / bounds.width().max(bounds.height());
+    let mut order: Vec<(u64, u32)> = sites
+        .iter()
+        .map(|&site| {
+            let way = points[site as usize] - bounds.min;
+            // A site's round is random: half of them come in the last, a quarter in the one before.
+            let round = u64::from(scrambled(site).leading_zeros());
+            let place = hilbert((way.x * scale) as u16, (way.y * scale) as u16);
+            ((64 - round) << 32 | u64::from(place), site)
+        })
+        .collect();
+    order.sort_unstable();
+    let mut triangulation = DelaunayTriangulation::with_capacity(sites.len(), sites.len() * 3, sites.len() * 2);
+    let mut last = None;
+    // A triangle to begin with, since looking for a place among sites on a line takes linear time.
+    for site in corners.into_iter().chain(order.into_iter().map(|(_, site)| site)) {
         let p = points[site as usize];
-        Vertex { position: Point2::new(representable(p.x), representable(p.y)), site }
-    });
-    // Not `bulk_load_stable`: it keeps the vertices that it puts off in a hash set, so that their order, and with it
-    // the outcome of a tie, would change from run to run. Coordinates are in range, so that loading cannot fail.
-    DelaunayTriangulation::bulk_load(vertices.collect()).unwrap_or_default()
+        let vertex = Vertex { position: Point2::new(representable(p.x), representable(p.y)), site };
+        let inserted = match last {
+            Some(hint) => triangulation.insert_with_hint(vertex, hint),
+            None => triangulation.insert(vertex),
+        };
+        // Coordinates are in range, so that no insertion fails.
+        last = inserted.ok().or(last);
+    }
+    triangulation
+}
+
+/// A number that looks random (the finalizer of MurmurHash3).
+fn scrambled(mut x: u32) -> u32 {
+    x ^= x >> 16;
+    x = x.wrapping_mul(0x85eb_ca6b);
+    x ^= x >> 13;
+    x = x.wrapping_mul(0xc2b2_ae35);
+    x ^ x >> 16
+}
+
+/// How far along a Hilbert curve a cell of a grid of 2^16 a side lies.
+fn hilbert(mut x: u16, mut y: u16) -> u32 {
+    let mut distance = 0;
+    for bit in (0..16).rev() {
+        let (right, down) = (x >> bit & 1, y >> bit & 1);
+        distance = distance << 2 | u32::from((3 * right) ^ down);
+        // The curve within a quarter is turned so that its ends meet those of the next.
+        if down == 0 {
+            if right == 1 {
+                (x, y) = (!x, !y);
+            }
+            (x, y) = (y, x);
+        }
+    }
+    distance
 }
 
 /// A coordinate within the range that spade's exact predicates work in. No page comes near its ends.
@@ -176,25 +234,26 @@ fn is_tied(edge: spade::handles::DirectedEdgeHandle<'_, Vertex, (), (), ()>) -> 
     sine_of_sum.abs() <= SAME_CIRCLE * scale && left_sine.abs() > SLIVER * left_scale.sqrt()
 }
 
-/// The links of sites that all lie on one line, or `None` if they do not.
-///
-/// They are told apart from the rest because inserting them one by one would take quadratic time, and because there is
-/// no triangle to begin with.
-fn links_along_line(points: &[Point]) -> Option<Vec<[u32; 2]>> {
-    let Some(&first) = points.first() else { return Some(Vec::new()) };
-    let farthest = points
-        .iter()
-        .copied()
-        .fold(first, |far, p| if p.distance_squared(first) > far.distance_squared(first) { p } else { far });
-    let along = farthest - first;
-    if points.iter().any(|&p| along.cross(p - first) != 0.0) {
-        return None;
+/// Three sites far from lying on one line, or, if all of them lie on one, the links along it.
+fn widest_triangle(points: &[Point]) -> Result<[u32; 3], Vec<[u32; 2]>> {
+    let Some(&first) = points.first() else { return Err(Vec::new()) };
+    // Of several in one place the first is taken.
+    let greatest = |measure: &dyn Fn(Point) -> f64| {
+        (0u32..)
+            .zip(points)
+            .fold((0, 0.0), |best, (site, &p)| if measure(p) > best.1 { (site, measure(p)) } else { best })
+    };
+    let (farthest, _) = greatest(&|p| p.distance_squared(first));
+    let along = points[farthest as usize] - first;
+    let (outermost, area) = greatest(&|p| along.cross(p - first).abs());
+    if area > 0.0 {
+        return Ok([0, farthest, outermost]);
     }
     let mut order: Vec<(f64, u32)> = (0u32..).zip(points).map(|(i, &p)| (along.dot(p - first), i)).collect();
     // By place, then by index, so that of several in one place the first is linked.
     order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     order.dedup_by_key(|&mut (_, i)| points[i as usize]);
-    Some(order.windows(2).map(|pair| [pair[0].1, pair[1].1]).collect())
+    Err(order.windows(2).map(|pair| [pair[0].1, pair[1].1]).collect())
 }
 
 #[cfg(test)]
@@ -269,7 +328,7 @@ mod tests {
 
         #[test]
         fn links_are_delaunay_s(points in points(0..8, 60)) {
-            prop_assume!(links_along_line(&points).is_none());
+            prop_assume!(widest_triangle(&points).is_ok());
             let graph = linked(&points);
             check(&points, &graph);
             prop_assert_eq!(edges(&graph).len() + 1, points.len() + graph.triangles.len());
@@ -277,7 +336,7 @@ mod tests {
 
         #[test]
         fn ties_on_a_lattice_are_cut_too(points in points(0..1, 300)) {
-            prop_assume!(links_along_line(&points).is_none());
+            prop_assume!(widest_triangle(&points).is_ok());
             check(&points, &linked(&points));
         }
 
@@ -361,9 +420,15 @@ mod tests {
     }
 
     #[test]
-    fn a_long_row_is_quick() {
-        let row: Vec<Point> = (0..200_000).map(|i| Point::new(f64::from(i) * 0.1, 5.0)).collect();
-        assert_eq!(linked(&row).edges().count(), 199_999);
+    fn long_rows_and_crosses_are_linked_in_little_time() {
+        let mut row: Vec<Point> = (0..100_000).map(|i| Point::new(f64::from(i) * 0.1, 5.0)).collect();
+        assert_eq!(linked(&row).edges().count(), 99_999);
+        row[777] = Point::new(8.0, 9.0);
+        assert_eq!(linked(&row).triangles.len(), 99_998);
+        let slanted: Vec<Point> = row.iter().map(|p| Point::new(p.x, p.x * 0.3)).collect();
+        assert!(linked(&slanted).edges().count() >= 99_999);
+        let cross: Vec<Point> = row.iter().map(|p| if p.x % 0.2 < 0.1 { *p } else { Point::new(p.y, p.x) }).collect();
+        assert!(linked(&cross).triangles.len() > 99_000);
     }
 
     #[test]

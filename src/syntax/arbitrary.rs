@@ -90,8 +90,8 @@ pub(super) fn expr() -> BoxedStrategy<Expr> {
     leaf.prop_recursive(3, 10, 3, |inner| whole(primary(inner.boxed()))).boxed()
 }
 
-/// What may stand before a block: there the first brace opens the block, so that one in a value needs brackets.
-fn head() -> BoxedStrategy<Expr> {
+/// What a tone derives from: the first brace that belongs to no match opens its block, so that a record needs brackets.
+fn base() -> BoxedStrategy<Expr> {
     let bracket = |expr: Expr| {
         if super::format::expression(&expr).contains('{') { make(ExprKind::Group(Box::new(expr))) } else { expr }
     };
@@ -196,7 +196,7 @@ fn with_doc(kind: BoxedStrategy<StatementKind>) -> BoxedStrategy<Statement> {
 fn declaration() -> BoxedStrategy<StatementKind> {
     let body = prop_oneof![
         properties(expr()).prop_map(ToneBody::Properties),
-        (head(), properties(expr())).prop_map(|(base, with)| ToneBody::Derived { base, with }),
+        (base(), properties(expr())).prop_map(|(base, with)| ToneBody::Derived { base, with }),
     ];
     let path = "[a-z\"\\\\{é ]{0,6}".prop_map(|value| Text { value, span: span() });
     prop_oneof![
@@ -237,13 +237,13 @@ fn drawing() -> BoxedStrategy<StatementKind> {
         let statement = with_doc(prop_oneof![4 => inner, 1 => local, 1 => declaration()].boxed());
         let body = vec(statement, 0..3).boxed();
         prop_oneof![
-            (head(), of(head()), body.clone()).prop_map(|(name, ink, body)| StatementKind::Layer { name, ink, body }),
-            (name(), head(), body.clone()).prop_map(|(name, iterable, body)| StatementKind::For {
+            (expr(), of(expr()), body.clone()).prop_map(|(name, ink, body)| StatementKind::Layer { name, ink, body }),
+            (name(), expr(), body.clone()).prop_map(|(name, iterable, body)| StatementKind::For {
                 variable: ident(name),
                 iterable,
                 body
             }),
-            (vec((head(), body.clone()), 1..3), of(body))
+            (vec((expr(), body.clone()), 1..3), of(body))
                 .prop_map(|(branches, otherwise)| StatementKind::If { branches, otherwise }),
         ]
     })

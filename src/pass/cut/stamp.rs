@@ -57,3 +57,53 @@ fn default_overlap(place: &Placement) -> f64 {
         Placement::Grid(_) | Placement::Hex { .. } => 1.0,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::{ring_area, ring_bounds};
+
+    const GRID: Placement = Placement::Hex { spacing: Length::mm(2.0) };
+
+    fn outline(shape: &Shape, place: &Placement, angle: f64) -> Vec<Point> {
+        let mut ring = Vec::new();
+        Stamp::new(shape, place, 2.0).outline(Point::new(5.0, 3.0), Angle::degrees(angle), &mut ring);
+        ring
+    }
+
+    #[test]
+    fn sizes_default_to_the_spacing_and_overlaps_to_what_fills_the_page() {
+        let rect = |width, height, overlap| Shape::Rect { width, height, overlap, upright: false };
+        let area = |shape: &Shape, place: &Placement| ring_area(&outline(shape, place, 33.0));
+        let points = Placement::Points(Vec::new());
+        let mm = |value| Some(Length::mm(value));
+        assert!((area(&rect(None, None, None), &GRID) - 4.0).abs() < 1e-12);
+        assert!((area(&rect(None, None, None), &points) - 4.0 * 1.6 * 1.6).abs() < 1e-12);
+        assert!((area(&rect(None, None, Some(0.5)), &points) - 1.0).abs() < 1e-12);
+        assert!((area(&rect(mm(3.0), None, None), &points) - 9.0).abs() < 1e-12);
+        assert!((area(&rect(None, mm(3.0), Some(2.0)), &GRID) - 24.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn widths_run_along_the_strokes() {
+        let shape = |upright| {
+            let (width, height) = (Some(Length::mm(4.0)), Some(Length::mm(1.0)));
+            Shape::Rect { width, height, overlap: None, upright }
+        };
+        let turned = ring_bounds(&outline(&shape(false), &GRID, 90.0));
+        assert!((turned.width() - 1.0).abs() < 1e-12 && (turned.height() - 4.0).abs() < 1e-12);
+        let upright = ring_bounds(&outline(&shape(true), &GRID, 90.0));
+        assert!((upright.width() - 4.0).abs() < 1e-12 && (upright.height() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn hexagons_are_measured_across_their_flats() {
+        let shape = Shape::Hexagon { size: None, overlap: None, upright: true };
+        let ring = outline(&shape, &GRID, 10.0);
+        let bounds = ring_bounds(&ring);
+        // Two vertical sides lie the spacing apart, so that the stamps fill a hexagonal lattice.
+        assert!((bounds.width() - 2.0).abs() < 1e-12);
+        assert!((bounds.height() - 4.0 / 3f64.sqrt()).abs() < 1e-12);
+        assert!((ring_area(&ring) - 2.0 * 3f64.sqrt()).abs() < 1e-12);
+    }
+}

@@ -20,17 +20,17 @@ impl Dashes {
         self.dash
     }
 
-    /// About how many dashes a range has.
+    /// The most dashes that reach into a range.
     pub(super) fn count(&self, (start, end): (f64, f64)) -> f64 {
-        (end - start) / self.period + 1.0
+        ((end - start + self.dash) / self.period).ceil() + 1.0
     }
 
     /// Appends the dashes of line `number` that reach into a range, in order.
     pub(super) fn cut(&self, (start, end): (f64, f64), number: i64, out: &mut Vec<(f64, f64)>) {
         let middle = if number.rem_euclid(2) == 0 { 0.0 } else { self.period / 2.0 };
-        let mut i = ((start - middle - self.dash / 2.0) / self.period).ceil();
-        loop {
-            let dash = middle + i * self.period - self.dash / 2.0;
+        let first = ((start - middle - self.dash / 2.0) / self.period).ceil();
+        for i in 0..=self.count((start, end)) as u64 {
+            let dash = middle + (first + i as f64) * self.period - self.dash / 2.0;
             if dash >= end {
                 break;
             }
@@ -38,7 +38,6 @@ impl Dashes {
             if out.last().is_none_or(|last| last.0 < dash) {
                 out.push((dash, dash + self.dash));
             }
-            i += 1.0;
         }
     }
 }

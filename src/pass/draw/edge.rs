@@ -1,7 +1,7 @@
 //! The region's outline, where strokes and dots end, their width too.
 
 use crate::geom::clip::{Frame, Ranges};
-use crate::geom::{Point, Rect, Vec2};
+use crate::geom::{Point, Rect};
 use crate::region::Region;
 use crate::scene::{Cap, Hatch};
 
@@ -100,11 +100,11 @@ impl<'a> Bank<'a> {
         kept.intersect(spans);
     }
 
-    /// Whether the outline, or the region's outside, comes near a box.
+    /// How a box lies to the region.
     pub(super) fn standing(&self, bounds: Rect) -> Contact {
         if self.region.touches_outline(bounds) {
             Contact::Crossing
-        } else if self.region.contains(bounds.min + Vec2::new(bounds.width() / 2.0, bounds.height() / 2.0)) {
+        } else if self.region.contains(bounds.centre()) {
             Contact::Inside
         } else {
             Contact::Outside

@@ -37,6 +37,9 @@ pub(super) fn draw(
         let Some((start, end)) = scratch.area.span(v) else { continue };
         scratch.ranges.reset(start, end);
         for shadow in &scratch.shadows[..scratch.covers.len()] {
+            if scratch.ranges.is_empty() {
+                break;
+            }
             if let Some((start, end)) = shadow.span(v) {
                 scratch.ranges.subtract(start, end);
             }

@@ -67,7 +67,9 @@ impl<'a> Comments<'a> {
 
     /// Whether a comment that has not been laid out stands between two places.
     pub(super) fn any_between(&self, start: usize, end: usize) -> bool {
-        self.list[self.next..].iter().any(|comment| (start..end).contains(&(comment.span.start as usize)))
+        let waiting = &self.list[self.next..];
+        let first = waiting.partition_point(|comment| (comment.span.start as usize) < start);
+        waiting.get(first).is_some_and(|comment| (comment.span.start as usize) < end)
     }
 
     /// The first `wanted` outside of comments in a range.

@@ -76,6 +76,7 @@ pub(super) fn describe(kind: Option<Kind>, text: &str) -> String {
         Some(Kind::Text | Kind::TextOpen | Kind::TextClose | Kind::BadText) => "a string".to_owned(),
         Some(Kind::Number) if text.len() <= LONGEST => format!("the number `{text}`"),
         Some(Kind::Number) => "a number".to_owned(),
+        Some(_) if text == "`" => "a back quote".to_owned(),
         Some(_) if text.len() <= LONGEST => format!("`{text}`"),
         Some(_) => "a word".to_owned(),
         None => "the end".to_owned(),
@@ -161,6 +162,10 @@ fn hint(phrases: &[&str], place: &Place) -> Option<String> {
         "=" if wants("a value") && before == "=" => return Some("equality is written `==`".to_owned()),
         "=" if wants("an operator") || wants("`then`") || wants("`{`") => {
             return Some("equality is written `==`".to_owned());
+        }
+        ">" if before == "-" => return Some("an arm is written `pattern => value`".to_owned()),
+        _ if place.first == "paint" && before == "with" && wants("`with`") => {
+            return Some("the region comes first: `paint canvas with …`".to_owned());
         }
         "&" if before == "&" => return Some("conditions are joined with `and`".to_owned()),
         "|" => return Some("conditions are joined with `or`, regions with `+`".to_owned()),

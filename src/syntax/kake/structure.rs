@@ -3,11 +3,14 @@
 //! In: tokens. Out: each bracket's partner, the places where nesting passes the limit, the tokens at which a statement
 //! or property begins, and a fault for every bracket that has no partner. On a text without mistakes the beginnings
 //! are exact: a keyword that stands where an operator or an end is due begins a statement. On others a keyword that
-//! leads its line and is followed as a statement would be closes the brackets that were forgotten before it.
+//! leads its line and is followed as a statement would be closes the brackets that were forgotten before it
+//! ([`repair`]).
+
+mod repair;
 
 use super::scan::{Fault, Kind, Token, is_keyword};
-use super::{KEYWORDS, MOST_ERRORS, NESTING, Places, RESERVED, near_word};
-use crate::diag::{Code, Diagnostic};
+use super::{KEYWORDS, NESTING, Places, RESERVED, near_word};
+use repair::bracket_kind;
 
 /// What a pair of brackets holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,6 +46,8 @@ pub(super) struct Structure {
     pub(super) too_deep: Vec<usize>,
     /// What is wrong with the brackets.
     pub(super) faults: Vec<Fault>,
+    /// How many brackets have no partner.
+    lost: usize,
 }
 
 /// A condition or match whose end has not come; the grammar recurses for each.
@@ -85,7 +90,7 @@ struct Frame {
     counts: [usize; 3],
 }
 
-/// Whether a less indented statement closes the block before it.
+/// Whether the way in which lines are broken and indented says where brackets end.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Layout {
     Ignored,
@@ -95,13 +100,13 @@ enum Layout {
 /// Finds the structure of a text. `shape` is what the whole of it holds.
 pub(super) fn structure(text: &str, tokens: &[Token], shape: Shape, places: &Places) -> Structure {
     let plain = Builder::run(text, tokens, shape, places, Layout::Ignored);
-    if plain.faults.is_empty() {
+    if plain.lost == 0 {
         return plain;
     }
-    // A brace that is missing somewhere is missed at the end of the file. Where the lines are indented as is usual, they
-    // tell the statement behind which it is missing.
+    // A bracket that is missing is missed far behind the place, a brace at the end of the file. Where the lines are set
+    // as is usual, they tell the statement or property behind which it is missing.
     let guided = Builder::run(text, tokens, shape, places, Layout::Heeded);
-    if guided.faults.len() <= plain.faults.len() { guided } else { plain }
+    if guided.lost <= plain.lost { guided } else { plain }
 }
 
 struct Builder<'a> {
@@ -116,26 +121,6 @@ struct Builder<'a> {
     counts: [usize; 3],
     is_too_deep: bool,
     found: Structure,
-}
-
-/// Round, square, curly.
-fn bracket_kind(bracket: &str) -> Option<usize> {
-    match bracket {
-        "(" | ")" => Some(0),
-        "[" | "]" => Some(1),
-        "{" | "}" => Some(2),
-        _ => None,
-    }
-}
-
-/// The bracket that closes `open`.
-pub(super) fn closing(open: &str) -> &'static str {
-    match open {
-        "(" => ")",
-        "[" => "]",
-        "{" => "}",
-        _ => "\"",
-    }
 }
 
 /// The keyword that a word is or was meant to be.
@@ -161,7 +146,7 @@ impl<'a> Builder<'a> {
             brackets: 0,
             counts: [0; 3],
             is_too_deep: false,
-            found: Structure { roles: vec![role; tokens.len()], too_deep: Vec::new(), faults: Vec::new() },
+            found: Structure { roles: vec![role; tokens.len()], too_deep: Vec::new(), faults: Vec::new(), lost: 0 },
         };
         for (index, token) in tokens.iter().enumerate() {
             builder.step(index, token);
@@ -357,79 +342,6 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Whether what follows a keyword makes it the beginning of a statement and nothing else.
-    fn is_followed_as_statement(&self, index: usize, keyword: &str) -> bool {
-        let next = self.text_of(index + 1);
-        let after = self.text_of(index + 2);
-        let kind = self.kind_of(index + 1);
-        let joins = RESERVED.contains(&next) || matches!(next, "with" | "as" | "in" | "pen" | "ink" | "_");
-        let is_name = kind == Some(Kind::Word) && !joins;
-        match keyword {
-            "let" | "param" | "field" | "region" => is_name && matches!(after, "=" | ":"),
-            "tone" | "fn" => is_name && matches!(after, "(" | "{" | "="),
-            "experiment" => is_name && after == "{",
-            "for" => is_name && after == "in",
-            "paint" | "outline" => {
-                is_name && after != ":" && !(is_keyword(next) && self.is_followed_plainly(index + 1, next))
-            }
-            "layer" | "import" => matches!(kind, Some(Kind::Text | Kind::TextOpen | Kind::BadText)),
-            "edition" | "seed" | "canvas" => self.is_followed_plainly(index, keyword),
-            _ => false,
-        }
-    }
-
-    /// The same for the keyword behind `paint`, which is more likely a value.
-    fn is_followed_plainly(&self, index: usize, keyword: &str) -> bool {
-        match keyword {
-            "edition" | "seed" => self.kind_of(index + 1) == Some(Kind::Number),
-            "canvas" => self.text_of(index + 1) == "{",
-            "paint" | "outline" => false,
-            _ => self.is_followed_as_statement(index, keyword),
-        }
-    }
-
-    /// Closes the brackets in which no statement may stand when one begins, and with [`Layout::Heeded`] the blocks that
-    /// are indented no less than it.
-    fn close_forgotten(&mut self, index: usize, keyword: &str) {
-        let Some(top) = self.frames.last() else { return };
-        // As a property's value, `region` may well stand before `angle: …`.
-        let is_value = top.shape == Shape::Properties && self.text_of(index + 2) == ":";
-        if top.wants_value && (is_value || matches!(keyword, "edition" | "seed" | "canvas")) {
-            return;
-        }
-        if self.frames.first().is_none_or(|whole| whole.shape != Shape::Statements) {
-            return;
-        }
-        let Some(statements) = self.frames.iter().rposition(|frame| frame.shape == Shape::Statements) else { return };
-        let mut keep = statements + 1;
-        if self.layout == Layout::Heeded {
-            let column = self.column(index);
-            while keep > 1
-                && let Some(around) = self.frames.get(keep - 2)
-                && around.shape == Shape::Statements
-                && around.indent >= column
-            {
-                keep -= 1;
-            }
-        }
-        self.unclosed(keep, index);
-    }
-
-    /// Closes the brackets of values when a property begins where an operator or comma is due.
-    fn close_before_property(&mut self, index: usize) {
-        if !self.frames.last().is_some_and(|top| top.shape == Shape::Values && !top.wants_value) {
-            return;
-        }
-        // Brackets nested beyond the limit are not searched, so that the work stays linear.
-        let mut searched = self.frames.iter().enumerate().rev().take(NESTING);
-        let around = searched.find(|(_, frame)| frame.shape != Shape::Values);
-        if let Some((properties, frame)) = around
-            && frame.shape == Shape::Properties
-        {
-            self.unclosed(properties + 1, index);
-        }
-    }
-
     fn open(&mut self, index: usize, token: &Token) {
         self.begin_if_fresh(index);
         let bracket = self.text_of(index);
@@ -487,43 +399,6 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn close(&mut self, index: usize) {
-        let bracket = self.text_of(index);
-        let kind = bracket_kind(bracket);
-        let opener = |frame: &Frame| frame.open.map(|open| self.text_of(open));
-        let is_partner = |frame: &Frame| match (kind, frame.open) {
-            (Some(kind), Some(_)) => opener(frame).and_then(bracket_kind) == Some(kind),
-            (None, Some(_)) => frame.shape == Shape::Text,
-            (_, None) => false,
-        };
-        let is_open = kind.is_none_or(|kind| self.counts.get(kind).is_some_and(|&count| count > 0));
-        if is_open {
-            let Some(partner) = self.frames.iter().rposition(is_partner) else { return };
-            self.unclosed(partner + 1, index);
-            self.pop(index, true);
-            return;
-        }
-        let inner = self.frames.last().and_then(opener).unwrap_or_default();
-        let span = self.span_of(index);
-        let fault = if matches!(inner, "(" | "[") && self.text_of(index + 1) != closing(inner) {
-            let open = self.frames.last().and_then(|frame| frame.open).unwrap_or_default();
-            let message = format!("expected `{}`, found `{bracket}`", closing(inner));
-            let note = self.span_of(open);
-            self.pop(index, true);
-            Diagnostic::error(Code::Syntax, span, message).note(note, "opened here")
-        } else {
-            // Several in a row are one mistake.
-            let repeats = index > 0
-                && self.kind_of(index - 1) == Some(Kind::Close)
-                && self.found.roles.get(index - 1).is_some_and(|role| !role.is_matched);
-            if repeats {
-                return;
-            }
-            Diagnostic::error(Code::Syntax, span, format!("`{bracket}` closes nothing")).hint("leave it out")
-        };
-        self.fault(self.tokens.get(index).map_or(0, |token| token.start), fault);
-    }
-
     /// Pops the innermost frame, which ends at token `end`.
     fn pop(&mut self, end: usize, is_matched: bool) {
         let Some(frame) = self.frames.pop() else { return };
@@ -552,51 +427,6 @@ impl<'a> Builder<'a> {
             }
         }
         self.measure(end);
-    }
-
-    /// Closes all but `keep` frames before token `end`, where their brackets should have been closed, and reports
-    /// them as one mistake.
-    fn unclosed(&mut self, keep: usize, end: usize) {
-        let mut forgotten = Vec::new();
-        // Where nesting passes the limit, that is reported and enough.
-        let mut is_known = self.is_too_deep;
-        while self.frames.len() > keep.max(1) {
-            if let Some(frame) = self.frames.last() {
-                is_known |= frame.has_bad_text;
-                if forgotten.len() < 4 {
-                    forgotten.extend(frame.open);
-                }
-            }
-            self.pop(end, false);
-        }
-        let Some((&inner, outer)) = forgotten.split_first() else { return };
-        if is_known {
-            return;
-        }
-        let bracket = self.text_of(inner);
-        let span = match self.tokens.get(end) {
-            Some(_) => self.span_of(end),
-            None => self.tokens.last().map_or(self.places.span(0, 0), |last| self.places.span(last.end, last.end)),
-        };
-        let place = if end < self.tokens.len() { "before this" } else { "before the end" };
-        let mut fault = Diagnostic::error(Code::Syntax, span, format!("unclosed `{bracket}`"))
-            .label(format!("expected `{}` {place}", closing(bracket)))
-            .note(self.span_of(inner), "opened here");
-        for &open in outer {
-            fault = fault.note(self.span_of(open), "this is not closed either");
-        }
-        self.fault(self.tokens.get(inner).map_or(0, |token| token.start), fault);
-    }
-
-    fn span_of(&self, index: usize) -> crate::span::Span {
-        let (start, end) = self.tokens.get(index).map_or((0, 0), |token| (token.start, token.end));
-        self.places.span(start, end)
-    }
-
-    fn fault(&mut self, at: usize, diagnostic: Diagnostic) {
-        if self.found.faults.len() < MOST_ERRORS {
-            self.found.faults.push(Fault { at, diagnostic });
-        }
     }
 }
 

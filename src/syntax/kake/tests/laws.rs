@@ -86,6 +86,21 @@ fn change(pieces: &mut Vec<&'static str>, at: usize, other: usize, how: u8) {
     }
 }
 
+/// What nests, each by one.
+const NESTS: [(&str, &str); 11] = [
+    ("(", ")"),
+    ("[1, ", "]"),
+    ("f(x: ", ")"),
+    ("{ a: ", "}"),
+    ("b[", "]"),
+    ("\"{", "}\""),
+    ("if ", " then a else b"),
+    ("if a then ", " else b"),
+    ("if a then b else if c then ", " else d"),
+    ("if a then b else 1 + ", ""),
+    ("match ", " { _ => a }"),
+];
+
 #[test]
 fn the_grammar_reads_the_scene() {
     agrees(SCENE).unwrap();
@@ -129,6 +144,16 @@ proptest! {
             }
         }
         agrees(&String::from_utf8_lossy(&bytes))?;
+    }
+
+    #[test]
+    fn nesting_is_counted_as_the_grammar_recurses(nests in prop::collection::vec(0..NESTS.len(), 100..160)) {
+        let open: String = nests.iter().map(|&nest| NESTS[nest].0).collect();
+        let close: String = nests.iter().rev().map(|&nest| NESTS[nest].1).collect();
+        let (_, diagnostics) = check(&format!("let v = {open}1{close}\nlet w = 1"));
+        let codes: Vec<Code> = diagnostics.iter().map(|diagnostic| diagnostic.code).collect();
+        let expected: &[Code] = if nests.len() > NESTING { &[Code::Nesting] } else { &[] };
+        prop_assert_eq!(codes, expected);
     }
 
     #[test]

@@ -43,6 +43,7 @@ fn what_was_expected_is_named() {
         ("let a = [1 2]", "2: expected `,` or `]`, found the number `2`"),
         ("let a = (1, )", ""),
         ("let a = ()", "): expected a value, found `)`"),
+        ("let a = \"{b c}\"", "c: expected `}`, found `c`"),
         ("let a = m.", ".: expected a name after `.`"),
         ("canvas { size 3 }", "3: expected `:` after the property's name, found the number `3`"),
         (
@@ -81,6 +82,8 @@ fn known_slips_have_hints() {
             ";: expected an operator or the next statement, found `;` (statements and properties end by themselves: \
              leave the `;` out)",
         ),
+        ("paint with b", "b: expected `with`, found `b` (the region comes first: `paint canvas with …`)"),
+        ("let a = match b { 1 -> 2 }", ">: expected a value, found `>` (an arm is written `pattern => value`)"),
         ("let a = 'b'", "': expected a value, found `'` (strings stand in double quotes)"),
         ("let a ＝ b", "＝: expected `:` or `=`, found `＝` (this is a full-width sign: write `=`)"),
     ] {
@@ -193,6 +196,16 @@ fn an_open_bracket_is_one_mistake() {
     check("tone a {\n  k: 2\n\ntone b {\n  k: 3\n}\nlet d = 4", 3, &["tone: unclosed `{`"]);
     check("layer \"a\" {\n  paint a with b\n\nlayer \"b\" {\n  paint c with d\n}\n", 2, &["layer: unclosed `{`"]);
     check("layer \"a\" {\nlayer \"b\" {\npaint c with d\n}\n", 1, &[": unclosed `{`"]);
+    check(
+        "tone t {\n  place: hex(spacing: 3mm\n  k: 2\n  fill: lines(pitch: 1mm\n}\npaint canvas with t",
+        2,
+        &["k: unclosed `(`", "}: unclosed `(`"],
+    );
+    check(
+        "tone t {\n  fill: lines(\n    pitch: 1mm\n    pen: 2mm\n  )\n}",
+        1,
+        &["pen: expected `,` or `)`, found `pen`"],
+    );
     check("let a = [1, 2", 0, &[": unclosed `[`"]);
     check("let a = (1]\nlet b = 2", 1, &["]: expected `)`, found `]`"]);
     check("let a = f(1))\nlet b = 2", 1, &["): `)` closes nothing (leave it out)"]);

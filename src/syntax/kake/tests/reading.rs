@@ -162,6 +162,7 @@ fn keywords_are_words_elsewhere() {
         "if x ==\n  canvas { paint a with b }",
         "tone tone(tone: tone = tone) = tone.tone(tone: tone) with { tone: tone }",
         "canvas { seed: 1 let: 2 if: 3\n else: 4\n then: 5 }",
+        "tone t {\n  domain:\n  region\n  angle: bfs()\n  a:\n  paint\n  b: 3\n}",
         "fn fn(a) = a\nlet x = fn(match: { })",
     ] {
         let (_, diagnostics) = parse(source(), text);
