@@ -33,9 +33,8 @@ const SHEETS: [(&str, f64, f64); 14] = [
     ("letter", 215.9, 279.4),
     ("tabloid", 279.4, 431.8),
 ];
-const SHEET_NAMES: &[&str] = &[
-    "a0", "a1", "a2", "a3", "a4", "a5", "a6", "b4", "b5", "jis_b4", "jis_b5", "legal", "letter", "tabloid",
-];
+const SHEET_NAMES: &[&str] =
+    &["a0", "a1", "a2", "a3", "a4", "a5", "a6", "b4", "b5", "jis_b4", "jis_b5", "legal", "letter", "tabloid"];
 
 const PROPERTIES: [&str; 7] = ["size", "dpi", "pixels", "paper", "ink", "depth", "unit"];
 const LATER: [&str; 3] = ["bleed", "gain", "repeat"];
@@ -95,7 +94,9 @@ pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Option<Canvas> {
     let paper = reader.colour(find("paper"), &["none"], Some(Colour::WHITE));
     let ink = reader.colour(find("ink"), &[], Some(Colour::BLACK));
     let depth = reader.depth(find("depth"));
-    if find("size").is_none() {
+    // A property that is not known may have been meant for it.
+    let is_known = |property: &&Property| PROPERTIES.contains(&property.name.name.as_str());
+    if find("size").is_none() && given.iter().all(is_known) {
         cx.report(
             Diagnostic::error(Code::Missing, span, "the canvas has no `size`")
                 .hint("`size: a4`, or width and height: `size: (60mm, 60mm)`"),

@@ -9,7 +9,7 @@ use crate::span::Span;
 use crate::syntax::ast::{self, Argument, Expr, ExprKind, Pattern, StringPart, Unit};
 
 use super::convert::{Slot, coerce};
-use super::cx::Cx;
+use super::cx::{Cx, grouped};
 use super::modules::Function;
 use super::scope::{Binding, Declared, Scope};
 use super::value::{FieldUnit, Kind, Member, TypedField, Value};
@@ -19,6 +19,11 @@ use super::{call, ops, params, tone, vocabulary};
 /// be of another kind.
 pub(super) fn eval<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, expr: &'a Expr, slot: Slot) -> Value {
     let value = cx.deeper(expr.span, |cx| eval_kind(cx, scope, expr, slot)).unwrap_or(Value::UNKNOWN);
+    if matches!(expr.kind, ExprKind::Tuple(_) | ExprKind::List(_) | ExprKind::Record(_)) && !value.has_at_most(PARTS) {
+        let message = format!("the value has more than {} parts", grouped(PARTS));
+        cx.report(Diagnostic::error(Code::Limit, expr.span, message));
+        return Value::UNKNOWN;
+    }
     if let Value::Field(TypedField { field, .. }) = &value
         && (field.depth() > FIELD_DEPTH || field.cost() > FIELD_COST)
     {
@@ -29,6 +34,10 @@ pub(super) fn eval<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, expr: &'a Exp
     value
 }
 
+/// How many members a value may have, those of its members counted too: lists of lists of lists grow fast.
+const PARTS: u64 = 1_000_000;
+/// How many bytes a string may have that is put together.
+const LONGEST: usize = 1 << 20;
 /// How deep a field's tree may be: it is walked at every site.
 const FIELD_DEPTH: u32 = 1000;
 /// How many parts a field may have, shared ones counted wherever they stand.
@@ -52,8 +61,10 @@ fn eval_kind<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, expr: &'a Expr, slo
         ExprKind::Index(list, index) => self::index(cx, scope, list, index, slot),
         ExprKind::Group(inner) => eval(cx, scope, inner, slot),
         ExprKind::Tuple(members) => {
-            let members: Rc<[Value]> = members.iter().map(|member| eval(cx, scope, member, Slot::ANY)).collect();
-            Value::Tuple(members)
+            // The members of points and boxes are lengths, and are held to that one by one.
+            let lengths = matches!((slot.kind, members.len()), (Some(Kind::Point), 2) | (Some(Kind::Box), 4));
+            let inner = if lengths { Slot::of(Kind::Length) } else { Slot::ANY };
+            Value::Tuple(members.iter().map(|member| expect(cx, scope, member, inner)).collect())
         }
         ExprKind::List(members) => {
             let inner = if slot.kind == Some(Kind::List) { Slot::ANY } else { slot };
@@ -126,6 +137,10 @@ fn string<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, parts: &'a [StringPart
                 value => text.push_str(&value.text()),
             },
         }
+        if text.len() > LONGEST && parts.len() > 1 {
+            cx.report(Diagnostic::error(Code::Limit, span, "the string is longer than a million characters"));
+            return Value::Unknown(Some(Kind::String));
+        }
     }
     if known { Value::string(&text, span.source) } else { Value::Unknown(Some(Kind::String)) }
 }
@@ -150,6 +165,9 @@ fn name<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span: Span, 
         cx.report(call::not_yet(name, span));
         return Value::UNKNOWN;
     }
+    if cx.modules[scope.module].is_incomplete {
+        return Value::UNKNOWN;
+    }
     let hint = name_hint(cx, scope, name, slot);
     cx.report(Diagnostic::error(Code::UnknownName, span, format!("`{name}` is not known here")).maybe_hint(hint));
     Value::UNKNOWN
@@ -169,6 +187,10 @@ fn name_hint<'a>(cx: &Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, slot: Slot)
     let mut known: Vec<&str> = slot.words.to_vec();
     known.extend(visible(cx, scope));
     known.extend(vocabulary::names(slot));
+    if slot.kind == Some(Kind::Colour) {
+        return did_you_mean(name, known)
+            .or_else(|| Some("colours are `#rrggbb`, or CSS names such as `navy`".to_owned()));
+    }
     did_you_mean(name, known).or_else(|| {
         let words = slot.words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>();
         (!words.is_empty()).then(|| format!("this takes {}", words.join(", ")))
@@ -209,26 +231,28 @@ pub(super) fn force<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, 
     match entry.binding {
         Binding::Value(value) => value,
         Binding::Busy => {
-            let message = format!("`{name}` needs itself");
+            let from = cx.naming.iter().rposition(|(busy, _)| busy == name).map_or(cx.naming.len(), |at| at + 1);
+            let way: Vec<String> = cx.naming[from..].iter().map(|(busy, _)| format!("`{busy}`")).collect();
+            let message = match way.is_empty() {
+                true => format!("`{name}` needs itself"),
+                false => format!("`{name}` needs itself by way of {}", way.join(" and ")),
+            };
             let diagnostic = Diagnostic::error(Code::Cycle, span, message).note(entry.span, "declared here");
             cx.report(diagnostic);
             Value::UNKNOWN
         }
         Binding::Lazy(binding, declared) => {
             scope.set(name, Binding::Busy);
-            let value = cx.declared(span, scope.parent().is_none(), |cx| bind(cx, scope, binding, declared)).unwrap_or(Value::UNKNOWN);
+            let value = cx
+                .declared(span, scope.parent().is_none(), |cx| bind(cx, scope, binding, declared))
+                .unwrap_or(Value::UNKNOWN);
             scope.set(name, Binding::Value(value.clone()));
             value
         }
     }
 }
 
-fn bind<'a>(
-    cx: &mut Cx<'a, '_>,
-    scope: &Rc<Scope<'a>>,
-    binding: &'a ast::Binding,
-    declared: Declared<'a>,
-) -> Value {
+fn bind<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, binding: &'a ast::Binding, declared: Declared<'a>) -> Value {
     let pinned = binding.ty.as_ref().and_then(|ty| named_kind(cx, ty));
     let slot = match (pinned, declared) {
         (Some(kind), _) => Slot::of(kind),
@@ -296,7 +320,10 @@ pub(super) fn module_of<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, base: &'
     };
     let module = &cx.modules[scope.module];
     let found = module.aliases.get(name.as_str()).copied();
-    if found.is_none() {
+    if found.is_none() && visible(cx, scope).contains(&name.as_str()) {
+        let message = format!("`{name}` is a value, and only modules have members");
+        cx.report(Diagnostic::error(Code::Type, base.span, message));
+    } else if found.is_none() && !module.lost.contains(&name.as_str()) {
         let mut hint = did_you_mean(name, module.aliases.keys().copied());
         if module.aliases.is_empty() {
             hint = Some(format!("`import \"…\" as {name}` gives a file this name"));
@@ -376,8 +403,16 @@ fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span
         cx.report(call::not_yet(name, span));
         return;
     }
+    if visible(cx, scope).contains(&name) {
+        let message = format!("`{name}` is a value, and only functions are called");
+        cx.report(Diagnostic::error(Code::Type, span, message));
+        return;
+    }
     let modules = cx.modules;
     let module = &modules[scope.module];
+    if module.is_incomplete {
+        return;
+    }
     let mut known: Vec<&str> = module.functions.keys().copied().collect();
     known.extend(module.opened.iter().flat_map(|&opened| modules[opened].functions.keys().copied()));
     for callable in vocabulary::callables() {
@@ -407,10 +442,11 @@ fn call_function<'a>(
     let what = format!("`{}`", function.name.name);
     let inner = bind_arguments(cx, scope, &what, (function.module, function.params), arguments, span);
     let Some(inner) = inner else { return Value::UNKNOWN };
-    if cx.is_dead() || !cx.count_iteration(span) {
+    if cx.is_dead() || cx.is_runaway(function.name.span) || !cx.count_iteration(span) {
         return Value::UNKNOWN;
     }
-    cx.nested(span, |cx| eval(cx, &inner, function.body, Slot::ANY)).unwrap_or(Value::UNKNOWN)
+    let name = function.name.span;
+    cx.called(name, span, |cx| eval(cx, &inner, function.body, Slot::ANY)).unwrap_or(Value::UNKNOWN)
 }
 
 /// Evaluates a function's body once with unknown arguments.
@@ -420,11 +456,7 @@ pub(super) fn check_function<'a>(cx: &mut Cx<'a, '_>, function: Function<'a>) {
 }
 
 /// A scope in which the parameters have their defaults, or are unknown.
-pub(super) fn unknown_arguments<'a>(
-    cx: &mut Cx<'a, '_>,
-    module: usize,
-    params: &'a [ast::Parameter],
-) -> Rc<Scope<'a>> {
+pub(super) fn unknown_arguments<'a>(cx: &mut Cx<'a, '_>, module: usize, params: &'a [ast::Parameter]) -> Rc<Scope<'a>> {
     let scope = Scope::inside(&cx.modules[module].scope);
     for param in params {
         let kind = param.ty.as_ref().and_then(|ty| named_kind(cx, ty));
@@ -474,8 +506,12 @@ pub(super) fn bind_arguments<'a>(
             }
             (None, Some(default)) => expect(cx, &scope, default, pinned.map_or(Slot::ANY, Slot::of)),
             (None, None) => {
-                let message = format!("{what} needs `{}`", param.name.name);
-                cx.report(Diagnostic::error(Code::Missing, span, message).note(param.name.span, "declared here"));
+                // An argument that none of the parameters took may have been meant for this one.
+                if !places.contains(&None) {
+                    let message = format!("{what} needs `{}`", param.name.name);
+                    let diagnostic = Diagnostic::error(Code::Missing, span, message);
+                    cx.report(diagnostic.note(param.name.span, "declared here"));
+                }
                 whole = false;
                 Value::Unknown(pinned)
             }
@@ -512,6 +548,14 @@ fn index<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, list: &'a Expr, index: 
     Value::UNKNOWN
 }
 
+/// Where the members of a list stand; the whole list where it was not written as one.
+pub(super) fn member_spans(expr: &Expr, count: usize) -> Vec<Span> {
+    match &expr.kind {
+        ExprKind::List(members) if members.len() == count => members.iter().map(|member| member.span).collect(),
+        _ => vec![expr.span; count],
+    }
+}
+
 fn range<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, low: &'a Expr, high: &'a Expr) -> Value {
     let ends = (eval(cx, scope, low, Slot::ANY), eval(cx, scope, high, Slot::ANY));
     if ends.0.is_unknown() || ends.1.is_unknown() {
@@ -526,7 +570,8 @@ fn range<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, low: &'a Expr, high: &'
         Some(_) if percent => Value::Range(Rc::new(ends)),
         Some((a, b)) if a.number().is_some() && b.number().is_some() => Value::Range(Rc::new((a, b))),
         _ => {
-            let message = format!("a range goes from number to number, not {} to {}", ends.0.describe(), ends.1.describe());
+            let message =
+                format!("a range goes from number to number, not {} to {}", ends.0.describe(), ends.1.describe());
             cx.report(Diagnostic::error(Code::Type, low.span.to(high.span), message));
             Value::Unknown(Some(Kind::Range))
         }
@@ -671,7 +716,7 @@ fn matching<'a>(
     span: Span,
 ) -> Value {
     let value = eval(cx, scope, subject, Slot::ANY);
-    check_patterns(cx, scope, (subject, &value), arms, span);
+    let covered = check_patterns(cx, scope, (subject, &value), arms, span);
     if value.is_unknown() {
         let values: Vec<Value> = arms.iter().map(|arm| cx.dead(|cx| eval(cx, scope, &arm.value, slot))).collect();
         return common(values);
@@ -684,6 +729,7 @@ fn matching<'a>(
     }
     match taken {
         Some(taken) => eval(cx, scope, &arms[taken].value, slot),
+        None if !covered => Value::UNKNOWN,
         None => {
             let message = format!("no arm covers {}", value.text());
             let diagnostic = Diagnostic::error(Code::Match, subject.span, message);
@@ -704,14 +750,14 @@ fn holds(pattern: &Pattern, value: &Value) -> bool {
     }
 }
 
-/// Patterns that can never match, match twice, or leave something uncovered whatever the value is.
+/// Patterns that can never match, match twice, or leave something uncovered whatever the value is; whether they cover all.
 fn check_patterns(
     cx: &mut Cx<'_, '_>,
     scope: &Rc<Scope<'_>>,
     (subject, value): (&Expr, &Value),
     arms: &[ast::Arm],
     span: Span,
-) {
+) -> bool {
     for (i, arm) in arms.iter().enumerate() {
         let expected = match arm.pattern {
             Pattern::Any => None,
@@ -726,29 +772,30 @@ fn check_patterns(
             let message = format!("this matches {}, but the value is {}", expected.noun(), value.describe());
             cx.report(Diagnostic::error(Code::Type, arm.span, message));
         }
-        if let Some(earlier) = arms[..i].iter().find(|earlier| earlier.pattern == arm.pattern || earlier.pattern == Pattern::Any) {
+        if let Some(earlier) =
+            arms[..i].iter().find(|earlier| earlier.pattern == arm.pattern || earlier.pattern == Pattern::Any)
+        {
             let message = "an earlier arm takes everything that this one would";
             cx.report(Diagnostic::error(Code::Match, arm.span, message).note(earlier.span, "this one"));
         }
     }
     if arms.iter().any(|arm| arm.pattern == Pattern::Any) {
-        return;
+        return true;
     }
     let choices = match (&subject.kind, value.kind()) {
         (_, Some(Kind::Bool)) => vec![Value::Bool(true), Value::Bool(false)],
         (ExprKind::Name(name), _) => cx.choices.get(&(scope.module, name.clone())).cloned().unwrap_or_default(),
         _ => Vec::new(),
     };
-    let missed: Vec<String> = choices
-        .iter()
-        .filter(|choice| !arms.iter().any(|arm| holds(&arm.pattern, choice)))
-        .map(Value::text)
-        .collect();
-    if choices.is_empty() || !missed.is_empty() {
-        let message = match missed.is_empty() {
-            true => "the match does not cover every value".to_owned(),
-            false => format!("the match does not cover {}", missed.join(", ")),
-        };
-        cx.report(Diagnostic::error(Code::Match, span, message).hint("a last arm `_ => …` covers the rest"));
+    let missed: Vec<String> =
+        choices.iter().filter(|choice| !arms.iter().any(|arm| holds(&arm.pattern, choice))).map(Value::text).collect();
+    if !choices.is_empty() && missed.is_empty() {
+        return true;
     }
+    let message = match missed.is_empty() {
+        true => "the match does not cover every value".to_owned(),
+        false => format!("the match does not cover {}", missed.join(", ")),
+    };
+    cx.report(Diagnostic::error(Code::Match, span, message).hint("a last arm `_ => …` covers the rest"));
+    false
 }

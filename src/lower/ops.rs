@@ -156,9 +156,7 @@ pub(super) fn binary(
     match op {
         BinaryOp::And | BinaryOp::Or => logic(cx, op, (a, a_span), (b, b_span)),
         BinaryOp::Equal | BinaryOp::NotEqual => equality(cx, op, a, b, span),
-        BinaryOp::Less | BinaryOp::LessEqual | BinaryOp::Greater | BinaryOp::GreaterEqual => {
-            order(cx, op, a, b, span)
-        }
+        BinaryOp::Less | BinaryOp::LessEqual | BinaryOp::Greater | BinaryOp::GreaterEqual => order(cx, op, a, b, span),
         BinaryOp::Add | BinaryOp::Subtract | BinaryOp::Intersect if is_region(&a) || is_region(&b) => {
             regions(cx, op, a, b, span)
         }
@@ -179,8 +177,7 @@ fn is_region(value: &Value) -> bool {
 
 fn regions(cx: &mut Cx<'_, '_>, op: BinaryOp, a: Value, b: Value, span: Span) -> Value {
     let (Value::Region(left), Value::Region(right)) = (&a, &b) else {
-        if !matches!((&a, &b), (Value::Unknown(_), _) | (_, Value::Unknown(_))) || (!is_region(&a) && !is_region(&b))
-        {
+        if !matches!((&a, &b), (Value::Unknown(_), _) | (_, Value::Unknown(_))) || (!is_region(&a) && !is_region(&b)) {
             let message = format!("`{}` cannot join {} and {}", op.symbol(), a.describe(), b.describe());
             cx.report(Diagnostic::error(Code::Type, span, message));
         }
@@ -246,7 +243,9 @@ fn arithmetic(cx: &mut Cx<'_, '_>, op: BinaryOp, a: Value, b: Value, (b_span, sp
 fn cannot(cx: &mut Cx<'_, '_>, op: BinaryOp, a: &Value, b: &Value, span: Span) -> Value {
     let message = format!("`{}` cannot join {} and {}", op.symbol(), a.describe(), b.describe());
     let hint = match (a, b) {
-        (Value::String(_), _) | (_, Value::String(_)) => Some("strings are put together as \"text {value}\"".to_owned()),
+        (Value::String(_), _) | (_, Value::String(_)) => {
+            Some("strings are put together as \"text {value}\"".to_owned())
+        }
         _ => None,
     };
     cx.report(Diagnostic::error(Code::Type, span, message).maybe_hint(hint));
@@ -265,6 +264,14 @@ fn disagree(cx: &mut Cx<'_, '_>, op: BinaryOp, a: &Value, b: &Value, span: Span)
     Value::UNKNOWN
 }
 
+fn incomparable(cx: &mut Cx<'_, '_>, op: BinaryOp, a: &Value, b: &Value, span: Span) -> Value {
+    let message = format!("`{}` cannot compare {} and {}", op.symbol(), a.describe(), b.describe());
+    let measured = |value| Operand::of(value).is_some_and(|operand| operand.unit != FieldUnit::Bool);
+    let code = if measured(a) && measured(b) { Code::Unit } else { Code::Type };
+    cx.report(Diagnostic::error(code, span, message));
+    Value::Unknown(Some(Kind::Bool))
+}
+
 fn order(cx: &mut Cx<'_, '_>, op: BinaryOp, a: Value, b: Value, span: Span) -> Value {
     if matches!(a, Value::Unknown(None)) || matches!(b, Value::Unknown(None)) {
         return Value::Unknown(Some(Kind::Bool));
@@ -274,9 +281,7 @@ fn order(cx: &mut Cx<'_, '_>, op: BinaryOp, a: Value, b: Value, span: Span) -> V
         _ => None,
     };
     let Some((x, y, _)) = settled else {
-        let message = format!("`{}` cannot compare {} and {}", op.symbol(), a.describe(), b.describe());
-        cx.report(Diagnostic::error(Code::Type, span, message));
-        return Value::Unknown(Some(Kind::Bool));
+        return incomparable(cx, op, &a, &b, span);
     };
     let (x, y, operator) = match op {
         BinaryOp::Less => (x, y, Operator::Less),
@@ -304,9 +309,7 @@ fn equality(cx: &mut Cx<'_, '_>, op: BinaryOp, a: Value, b: Value, span: Span) -
         _ => None,
     };
     let Some((x, y, _)) = settled else {
-        let message = format!("`{}` cannot compare {} and {}", op.symbol(), a.describe(), b.describe());
-        cx.report(Diagnostic::error(Code::Type, span, message));
-        return Value::Unknown(Some(Kind::Bool));
+        return incomparable(cx, op, &a, &b, span);
     };
     let equal = combine(x, y, Operator::Equal, FieldUnit::Bool);
     if negate { map(equal, Function::Not, FieldUnit::Bool).value() } else { equal.value() }
@@ -375,9 +378,7 @@ pub(super) fn select(cx: &mut Cx<'_, '_>, condition: Field, a: &Value, b: &Value
         return Value::Unknown(Some(Kind::Field));
     };
     match (x.field(), y.field()) {
-        (Some(x), Some(y)) => {
-            Value::Field(TypedField { field: Field::new(Node::Select(condition, x, y)), unit })
-        }
+        (Some(x), Some(y)) => Value::Field(TypedField { field: Field::new(Node::Select(condition, x, y)), unit }),
         _ => Value::Unknown(Some(Kind::Field)),
     }
 }

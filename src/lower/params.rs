@@ -29,11 +29,7 @@ pub(super) struct Set {
 }
 
 /// Reads the values that were set.
-pub(super) fn parse_sets(
-    config: &LowerConfig,
-    sources: &mut Sources,
-    diagnostics: &mut Vec<Diagnostic>,
-) -> Vec<Set> {
+pub(super) fn parse_sets(config: &LowerConfig, sources: &mut Sources, diagnostics: &mut Vec<Diagnostic>) -> Vec<Set> {
     let mut sets: Vec<Set> = Vec::with_capacity(config.sets.len());
     for (name, text) in &config.sets {
         let source = sources.add(format!("--set {name}"), text.as_str(), Syntax::Kake);
@@ -72,15 +68,16 @@ pub(super) fn apply<'a>(cx: &mut Cx<'a, '_>, sets: &'a [Set]) {
     for set in sets {
         let Some((module, _, name)) = known.iter().find(|(_, full, _)| *full == set.name) else {
             let message = format!("the scene has no parameter `{}`", set.name);
-            let hint = did_you_mean(&set.name, known.iter().map(|(_, full, _)| full.as_str())).unwrap_or_else(|| {
-                match known.is_empty() {
+            let hint =
+                did_you_mean(&set.name, known.iter().map(|(_, full, _)| full.as_str())).unwrap_or_else(|| match known
+                    .is_empty()
+                {
                     true => "it declares none: `param name = value`".to_owned(),
                     false => {
                         let names: Vec<_> = known.iter().map(|(_, full, _)| format!("`{full}`")).collect();
                         format!("its parameters are {}", names.join(", "))
                     }
-                }
-            });
+                });
             cx.report(Diagnostic::error(Code::Param, set.span, message).hint(hint));
             continue;
         };
@@ -112,7 +109,8 @@ pub(super) fn settle<'a>(
             within(cx, value, allowed, set.span)
         }
     };
-    let settled = Settled { kind, domain: domain.and_then(|(domain, _)| domain), default: text, value: value.clone() };
+    let domain = domain.and_then(|(domain, span)| Some((domain?, span)));
+    let settled = Settled { kind, domain, default: text, value: value.clone() };
     cx.settled.insert((scope.module, name.clone()), settled);
     value
 }
@@ -121,7 +119,8 @@ pub(super) fn settle<'a>(
 #[derive(Debug, Clone)]
 pub(super) struct Settled {
     kind: Option<Kind>,
-    domain: Option<Value>,
+    /// The range or choices, with their place.
+    domain: Option<(Value, Span)>,
     default: ParamValue,
     value: Value,
 }
@@ -232,7 +231,7 @@ pub(super) fn level<'a>(cx: &mut Cx<'a, '_>, name: &str, value: Value, span: Spa
     let (module, _, short) = settable(cx).into_iter().find(|(_, full, _)| full == name)?;
     let settled = cx.settled.get(&(module, short)).cloned()?;
     let value = coerce(cx, value, settled.kind.map_or(Slot::ANY, Slot::of), span);
-    let value = within(cx, value, settled.domain.as_ref().map(|domain| (domain, span)), span);
+    let value = within(cx, value, settled.domain.as_ref().map(|(domain, place)| (domain, *place)), span);
     (!value.is_unknown()).then(|| param_value(&value))
 }
 
@@ -254,7 +253,7 @@ pub(super) fn list(cx: &Cx<'_, '_>) -> Vec<Param> {
             name: full,
             doc: doc.map(|doc| doc.text.clone()),
             ty: settled.kind.map_or("value", Kind::name).to_owned(),
-            domain: settled.domain.as_ref().and_then(|domain| match domain {
+            domain: settled.domain.as_ref().and_then(|(domain, _)| match domain {
                 Value::Range(ends) => Some(ParamDomain::Range(param_value(&ends.0), param_value(&ends.1))),
                 Value::List(choices) => Some(ParamDomain::Choices(choices.iter().map(param_value).collect())),
                 _ => None,

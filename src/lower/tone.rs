@@ -83,14 +83,26 @@ pub(super) fn instantiate<'a>(
     if !cx.count_iteration(span) {
         return Value::Unknown(Some(Kind::Tone));
     }
-    let value = cx.nested(span, |cx| properties(cx, &scope, tone)).flatten();
+    let name = tone.name.span;
+    if cx.is_runaway(name) {
+        return Value::Unknown(Some(Kind::Tone));
+    }
+    // Without parameters nothing can end the round.
+    if tone.params.is_empty() && cx.is_under_way(name) {
+        let message = format!("the tone {what} is derived from itself");
+        cx.report(Diagnostic::error(Code::Cycle, span, message).note(name, "declared here"));
+        cx.give_up();
+        return Value::Unknown(Some(Kind::Tone));
+    }
+    let value = cx.called(name, span, |cx| properties(cx, &scope, tone)).flatten();
     value.map_or(Value::Unknown(Some(Kind::Tone)), |tone| Value::Tone(Rc::new(tone)))
 }
 
 /// Evaluates a tone that nothing may paint with, with unknown arguments.
 pub(super) fn check<'a>(cx: &mut Cx<'a, '_>, tone: Tone<'a>) {
     let scope = eval::unknown_arguments(cx, tone.module, tone.params);
-    let checked = cx.nested(tone.name.span, |cx| properties(cx, &scope, tone));
+    let name = tone.name.span;
+    let checked = cx.called(name, name, |cx| properties(cx, &scope, tone));
     if let (Some(Some(tone)), ToneBody::Properties(_)) = (checked, tone.body)
         && !tone.broken
     {
@@ -109,12 +121,7 @@ fn properties<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, tone: Tone<'a>) ->
             let base = match expect_tone(cx, scope, base) {
                 Value::Tone(base) => (*base).clone(),
                 // The base is unknown or broken, but what differs can be looked at all the same.
-                _ => ToneValue {
-                    name: String::new(),
-                    declared: tone.name.span,
-                    properties: Vec::new(),
-                    broken: true,
-                },
+                _ => ToneValue { name: String::new(), declared: tone.name.span, properties: Vec::new(), broken: true },
             };
             (base, with)
         }
@@ -164,7 +171,10 @@ pub(super) fn expect_tone<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, expr: 
             let alias = module.aliases.iter().find(|(_, index)| modules[**index].tones.contains_key(name.as_str()));
             alias.map(|(alias, _)| format!("`{alias}.{name}` is a tone"))
         });
-        cx.report(Diagnostic::error(Code::UnknownTone, span, format!("there is no tone `{name}`")).maybe_hint(hint));
+        if !module.is_incomplete {
+            let message = format!("there is no tone `{name}`");
+            cx.report(Diagnostic::error(Code::UnknownTone, span, message).maybe_hint(hint));
+        }
         return Value::Unknown(Some(Kind::Tone));
     }
     eval::expect(cx, scope, expr, slot)
@@ -194,6 +204,17 @@ fn member_tone<'a>(
     Value::Unknown(Some(Kind::Tone))
 }
 
+/// A list of fills, one for each layer.
+fn fills(cx: &mut Cx<'_, '_>, members: &Rc<[Value]>, expr: &Expr) -> Value {
+    if members.is_empty() {
+        cx.report_value(Diagnostic::error(Code::Range, expr.span, "the list of fills is empty"));
+        return Value::Unknown(Some(Kind::Fill));
+    }
+    let spans = eval::member_spans(expr, members.len());
+    let fill = |(member, span): (&Value, Span)| coerce(cx, member.clone(), Slot::of(Kind::Fill), span);
+    Value::List(members.iter().zip(spans).map(fill).collect())
+}
+
 impl ToneValue {
     fn give<'a>(&mut self, cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, property: &'a Property) {
         let name = &property.name;
@@ -214,7 +235,7 @@ impl ToneValue {
         };
         let value = eval::eval(cx, scope, &property.value, *slot);
         let value = match (*known, value) {
-            ("fill", Value::List(members)) => self.fills(cx, &members, property.value.span),
+            ("fill", Value::List(members)) => fills(cx, &members, &property.value),
             (_, value) => coerce(cx, value, *slot, property.value.span),
         };
         let value = self.held_to_range(cx, known, value, property.value.span);
@@ -223,19 +244,17 @@ impl ToneValue {
         self.properties.push(Given { name: known, value, span: property.value.span });
     }
 
-    fn fills(&mut self, cx: &mut Cx<'_, '_>, members: &Rc<[Value]>, span: Span) -> Value {
-        if members.is_empty() {
-            cx.report_value(Diagnostic::error(Code::Range, span, "the list of fills is empty"));
-            return Value::Unknown(Some(Kind::Fill));
-        }
-        Value::List(members.iter().map(|member| coerce(cx, member.clone(), Slot::of(Kind::Fill), span)).collect())
-    }
-
     fn held_to_range(&self, cx: &mut Cx<'_, '_>, name: &str, value: Value, span: Span) -> Value {
         let message = match (name, &value) {
             ("bleed", Value::Length(mm)) if *mm < 0.0 => "`bleed` must not be negative".to_owned(),
             ("k", Value::Field(TypedField { unit, .. })) if *unit != FieldUnit::Number => {
-                let message = format!("`k` takes numbers, not {}", unit.noun());
+                let found = match unit {
+                    FieldUnit::Number => "numbers",
+                    FieldUnit::Length => "lengths",
+                    FieldUnit::Angle => "angles",
+                    FieldUnit::Bool => "conditions",
+                };
+                let message = format!("`k` takes numbers, not {found}");
                 cx.report(Diagnostic::error(Code::Type, span, message));
                 return Value::Unknown(Some(Kind::Field));
             }
@@ -363,9 +382,7 @@ impl ToneValue {
 
     fn ground(&self) -> Option<Ground> {
         match &self.get("ground")?.value {
-            Value::Fill(fill) => {
-                Some(Ground::Fill { fill: (**fill).clone(), angle: Angle::degrees(GROUND_DEGREES) })
-            }
+            Value::Fill(fill) => Some(Ground::Fill { fill: (**fill).clone(), angle: Angle::degrees(GROUND_DEGREES) }),
             Value::Word(_) => Some(Ground::Nearest),
             _ => None,
         }

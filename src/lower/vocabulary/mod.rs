@@ -30,8 +30,29 @@ const TABLES: [(Option<Kind>, &[Signature]); 7] = [
 
 /// Names of the language that this version does not draw.
 const LATER: [&str; 23] = [
-    "arcs", "cell", "coloured", "contour", "crosses", "edges", "flood", "flow", "hand", "motif", "nawaami", "penrose",
-    "pinwheel", "relaxed", "scribble", "stamp", "steps", "stops", "trapezoid", "triangle", "triangles", "tuned", "waves",
+    "arcs",
+    "cell",
+    "coloured",
+    "contour",
+    "crosses",
+    "edges",
+    "flood",
+    "flow",
+    "hand",
+    "motif",
+    "nawaami",
+    "penrose",
+    "pinwheel",
+    "relaxed",
+    "scribble",
+    "stamp",
+    "steps",
+    "stops",
+    "trapezoid",
+    "triangle",
+    "triangles",
+    "tuned",
+    "waves",
 ];
 
 /// Whether a name belongs to the language but not to this version.
@@ -47,9 +68,7 @@ pub(super) fn find(name: &str, slot: Slot, arguments: &[Argument]) -> Option<&'s
     let in_table = |(_, table): &(Option<Kind>, &'static [Signature])| table.iter().find(|s| s.name == name);
     let fitting = TABLES.iter().filter(|(kind, _)| kind.is_some() && *kind == wanted).find_map(in_table);
     // A region's rectangle stands only where a region is asked for.
-    let others = || {
-        TABLES.iter().filter(|(kind, _)| name != "rect" || *kind == Some(Kind::Shape)).find_map(in_table)
-    };
+    let others = || TABLES.iter().filter(|(kind, _)| name != "rect" || *kind == Some(Kind::Shape)).find_map(in_table);
     fitting.or_else(others)
 }
 
