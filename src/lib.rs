@@ -47,6 +47,7 @@ use lower::{LowerConfig, Lowered};
 use pass::draw::{Assembly, Item, Stages, items};
 use pass::{cut, link, place, turn};
 use scene::{Canvas, Limits, Paint, Scene};
+use span::Span;
 use stage::{Angles, Graph, Sites, Tiles};
 
 /// What the caller decides about a compilation.
@@ -122,7 +123,9 @@ pub fn compile(path: &str, loader: &dyn Loader, config: &Config, observer: &mut 
     let mut lowered = lower::lower(path, loader, &config.lower);
     let Some(scene) = &lowered.scene else { return Compiled { drawing: None, lowered } };
     let mut diagnostics = Vec::new();
-    let drawing = draw(scene, config, observer, &mut diagnostics);
+    // What concerns the whole scene is said at its first character.
+    let start = lowered.sources.iter().next().map(|(source, _)| Span::new(source, 0, 0));
+    let drawing = draw(scene, start, config, observer, &mut diagnostics);
     lowered.diagnostics.extend(diagnostics);
     diag::sort(&mut lowered.diagnostics);
     Compiled { drawing, lowered }
@@ -131,6 +134,7 @@ pub fn compile(path: &str, loader: &dyn Loader, config: &Config, observer: &mut 
 /// Draws a scene. Limits that are met and warnings go to `diagnostics`.
 fn draw(
     scene: &Scene,
+    start: Option<Span>,
     config: &Config,
     observer: &mut dyn Observer,
     diagnostics: &mut Vec<Diagnostic>,
@@ -146,9 +150,10 @@ fn draw(
         }
     }
     if items.is_empty() {
-        let message = "the scene paints nothing";
-        let hint = "a scene has a `paint REGION with TONE` statement; one with tones alone is a library to import";
-        diagnostics.push(Diagnostic::without_span(Code::Empty, message).hint(hint));
+        let message = "the scene draws nothing";
+        let hint = "`paint REGION with TONE` does; a library of tones is imported by a scene that paints";
+        let diagnostic = Diagnostic { span: start, ..Diagnostic::without_span(Code::Empty, message) };
+        diagnostics.push(diagnostic.hint(hint));
         return None;
     }
     let mut assembly = Assembly::new(canvas, limits);

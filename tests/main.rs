@@ -1,1 +1,13 @@
-fn main() {}
+//! The tests of the whole program: scenes in, pictures and diagnostics out.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod arrows;
+mod bad_input;
+mod cases;
+mod cli;
+mod codes;
+mod determinism;
+mod documents;
+mod examples;
+mod later;
+mod support;

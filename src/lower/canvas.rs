@@ -95,7 +95,9 @@ pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Option<Canvas> {
     let paper = reader.colour(find("paper"), &["none"], Some(Colour::WHITE));
     let ink = reader.colour(find("ink"), &[], Some(Colour::BLACK));
     let depth = reader.depth(find("depth"));
-    if find("size").is_none() {
+    // A property that is not known may have been meant for it.
+    let is_known = |property: &&Property| PROPERTIES.contains(&property.name.name.as_str());
+    if find("size").is_none() && given.iter().all(is_known) {
         cx.report(
             Diagnostic::error(Code::Missing, span, "the canvas has no `size`")
                 .hint("`size: a4`, or width and height: `size: (60mm, 60mm)`"),

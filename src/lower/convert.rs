@@ -66,6 +66,10 @@ pub(super) fn coerce(cx: &mut Cx<'_, '_>, value: Value, slot: Slot, span: Span) 
     {
         return Value::Word(word);
     }
+    // What is wrong inside it was reported.
+    if value.kind() == Some(kind) && value.is_unknown() {
+        return Value::Unknown(Some(kind));
+    }
     if let Value::Unknown(from) = value {
         if let Some(from) = from
             && !may_become(from, kind)
@@ -150,7 +154,7 @@ fn hint(value: &Value, kind: Kind, slot: Slot) -> Option<String> {
     Some(match (value, kind) {
         (Value::Number(n), Kind::Angle) => format!("angles need a unit: `{n}deg`"),
         (Value::Percent(_), Kind::Length) => "lengths need a unit or a canvas unit: `6mm`".to_owned(),
-        (Value::String(text), Kind::Length | Kind::Number | Kind::Angle) => {
+        (Value::String(text), Kind::Length | Kind::Number | Kind::Angle | Kind::Colour) => {
             format!("write it without the quotes: `{}`", text.value)
         }
         (Value::String(text), _) if !slot.words.is_empty() => {
@@ -159,13 +163,13 @@ fn hint(value: &Value, kind: Kind, slot: Slot) -> Option<String> {
         (Value::Field(_), Kind::Number | Kind::Length | Kind::Angle) => {
             "this takes one value for the whole page, not a field".to_owned()
         }
-        (Value::Number(_), Kind::Point) => "a point is written `(10mm, 20mm)`".to_owned(),
+        (Value::Number(_) | Value::Angle(_), Kind::Angles) => "an angle for every tile: `fixed(45deg)`".to_owned(),
+        (Value::Number(_) | Value::Length(_), Kind::Point) => "a point is written `(10mm, 20mm)`".to_owned(),
         (Value::Tuple(members), Kind::Box) if members.len() == 2 => {
             "a box is written `(x, y, width, height)`".to_owned()
         }
         (Value::Tuple(_), Kind::Box | Kind::Point) => "its members are lengths".to_owned(),
         (Value::Word(word), _) => format!("`{word}` belongs elsewhere"),
-        (Value::Angle(_), Kind::Angles) => format!("`fixed({})` turns every tile so", value.text()),
         (Value::Field(_), Kind::Angles) => "`along(field)` turns tiles along a field of angles".to_owned(),
         (Value::Tone(_), _) => "tones stand behind `with`".to_owned(),
         _ => return None,

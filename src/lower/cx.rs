@@ -42,12 +42,14 @@ pub(super) struct Cx<'a, 'c> {
     pub(super) naming: Vec<(String, u32)>,
     pub(super) images: BTreeMap<(String, &'static str), Option<Arc<Image>>>,
     pub(super) drawings: BTreeMap<String, Option<Rc<SvgFile>>>,
-    /// The tones whose properties are being evaluated, by where they are declared.
-    pub(super) tones: Vec<Span>,
     /// Dead branches that were checked already.
     pub(super) checked: BTreeSet<Span>,
     /// Calls of functions, tones and lazy values that are under way.
     calls: u32,
+    /// Where the functions and tones that are under way are declared.
+    under_way: Vec<Span>,
+    /// Those that were found to call each other without end.
+    runaway: BTreeSet<Span>,
     files: BTreeMap<String, Arc<[u8]>>,
     diagnostics: Vec<Diagnostic>,
     reported: BTreeSet<(Code, Option<Span>)>,
@@ -78,9 +80,10 @@ impl<'a, 'c> Cx<'a, 'c> {
             naming: Vec::new(),
             images: BTreeMap::new(),
             drawings: BTreeMap::new(),
-            tones: Vec::new(),
             checked: BTreeSet::new(),
             calls: 0,
+            under_way: Vec::new(),
+            runaway: BTreeSet::new(),
             files: BTreeMap::new(),
             diagnostics,
             reported: BTreeSet::new(),
@@ -147,15 +150,42 @@ impl<'a, 'c> Cx<'a, 'c> {
         let limit = self.config.limits.nesting;
         if u64::from(self.calls) >= limit {
             let message = format!("calls are nested more than {limit} deep");
-            self.report(Diagnostic::error(Code::Recursion, span, message).hint(
-                "a function that calls itself needs a condition that ends it; `--limit nesting=N` lifts the limit",
-            ));
+            self.report(
+                Diagnostic::error(Code::Recursion, span, message)
+                    .hint("what calls itself needs a condition that ends it; `--limit nesting=N` lifts the limit"),
+            );
             return None;
         }
         self.calls += 1;
         let result = self.deeper(span, inner);
         self.calls -= 1;
         result
+    }
+
+    /// Enters a call of the function or tone that is declared at `name`.
+    pub(super) fn called<T>(&mut self, name: Span, span: Span, inner: impl FnOnce(&mut Self) -> T) -> Option<T> {
+        self.under_way.push(name);
+        let result = self.nested(span, inner);
+        if result.is_none() {
+            self.give_up();
+        }
+        self.under_way.pop();
+        result
+    }
+
+    /// Calls of what is under way now come to nothing from here on: one report of a round of calls is enough.
+    pub(super) fn give_up(&mut self) {
+        self.runaway.extend(self.under_way.iter().copied());
+    }
+
+    /// Whether a function or tone is one of those that call each other without end.
+    pub(super) fn is_runaway(&self, name: Span) -> bool {
+        self.runaway.contains(&name)
+    }
+
+    /// Whether a call of a function or tone is under way.
+    pub(super) fn is_under_way(&self, name: Span) -> bool {
+        self.under_way.contains(&name)
     }
 
     /// Finds the value of a declaration. Those of a module are worth the same whoever asks, so they are live even where

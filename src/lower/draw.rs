@@ -30,6 +30,8 @@ struct Painted {
     name: Option<(String, Span)>,
     seed: Option<u64>,
     span: Span,
+    /// Where the tone is named.
+    tone_span: Span,
 }
 
 /// Whether a statement draws, or may.
@@ -309,9 +311,9 @@ fn paint<'a>(
         Some((Value::String(text), span)) => Some((text.value.to_string(), span)),
         _ => None,
     };
-    let (Value::Region(area), Value::Tone(tone)) = (area, value) else { return None };
+    let (Value::Region(area), Value::Tone(value)) = (area, value) else { return None };
     check_region(cx, &area, region.span)?;
-    Some(Painted { region: area, tone, name, seed, span })
+    Some(Painted { region: area, tone: value, name, seed, span, tone_span: tone.span })
 }
 
 fn outline<'a>(
@@ -420,7 +422,7 @@ fn finish(cx: &mut Cx<'_, '_>, drawn: Vec<Drawn>, names: &mut impl Iterator<Item
             }
             Drawn::Paint(painted) => {
                 let name = names.next().unwrap_or_default();
-                let Some(tone) = painted.tone.settle(cx, painted.span) else { continue };
+                let Some(tone) = painted.tone.settle(cx, painted.tone_span) else { continue };
                 draws.push(Draw::Paint(Box::new(Paint {
                     name,
                     tone_name: painted.tone.name.clone(),

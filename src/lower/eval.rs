@@ -9,7 +9,7 @@ use crate::span::Span;
 use crate::syntax::ast::{self, Argument, Expr, ExprKind, Pattern, StringPart, Unit};
 
 use super::convert::{self, Slot, coerce};
-use super::cx::Cx;
+use super::cx::{Cx, grouped};
 use super::modules::Function;
 use super::scope::{Binding, Declared, Scope};
 use super::value::{FieldUnit, Kind, Member, TypedField, Value};
@@ -19,6 +19,11 @@ use super::{call, ops, params, tone, vocabulary};
 /// be of another kind.
 pub(super) fn eval<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, expr: &'a Expr, slot: Slot) -> Value {
     let value = cx.deeper(expr.span, |cx| eval_kind(cx, scope, expr, slot)).unwrap_or(Value::UNKNOWN);
+    if matches!(expr.kind, ExprKind::Tuple(_) | ExprKind::List(_) | ExprKind::Record(_)) && !value.has_at_most(PARTS) {
+        let message = format!("the value has more than {} parts", grouped(PARTS));
+        cx.report(Diagnostic::error(Code::Limit, expr.span, message));
+        return Value::UNKNOWN;
+    }
     if let Value::Field(TypedField { field, .. }) = &value
         && (field.depth() > FIELD_DEPTH || field.cost() > FIELD_COST)
     {
@@ -29,6 +34,10 @@ pub(super) fn eval<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, expr: &'a Exp
     value
 }
 
+/// How many members a value may have, those of its members counted too: lists of lists of lists grow fast.
+const PARTS: u64 = 1_000_000;
+/// How many bytes a string may have that is put together.
+const LONGEST: usize = 1 << 20;
 /// How deep a field's tree may be: it is walked at every site.
 const FIELD_DEPTH: u32 = 1000;
 /// How many parts a field may have, shared ones counted wherever they stand.
@@ -52,8 +61,10 @@ fn eval_kind<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, expr: &'a Expr, slo
         ExprKind::Index(list, index) => self::index(cx, scope, list, index, slot),
         ExprKind::Group(inner) => eval(cx, scope, inner, slot),
         ExprKind::Tuple(members) => {
-            let members: Rc<[Value]> = members.iter().map(|member| eval(cx, scope, member, Slot::ANY)).collect();
-            Value::Tuple(members)
+            // The members of points and boxes are lengths, and are held to that one by one.
+            let lengths = matches!((slot.kind, members.len()), (Some(Kind::Point), 2) | (Some(Kind::Box), 4));
+            let inner = if lengths { Slot::of(Kind::Length) } else { Slot::ANY };
+            Value::Tuple(members.iter().map(|member| expect(cx, scope, member, inner)).collect())
         }
         ExprKind::List(members) => {
             let inner = if slot.kind == Some(Kind::List) { Slot::ANY } else { slot };
@@ -126,6 +137,10 @@ fn string<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, parts: &'a [StringPart
                 value => text.push_str(&value.text()),
             },
         }
+        if text.len() > LONGEST && parts.len() > 1 {
+            cx.report(Diagnostic::error(Code::Limit, span, "the string is longer than a million characters"));
+            return Value::Unknown(Some(Kind::String));
+        }
     }
     if known { Value::string(&text, span.source) } else { Value::Unknown(Some(Kind::String)) }
 }
@@ -150,6 +165,9 @@ fn name<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span: Span, 
         cx.report(call::not_yet(name, span));
         return Value::UNKNOWN;
     }
+    if cx.modules[scope.module].is_incomplete {
+        return Value::UNKNOWN;
+    }
     let hint = name_hint(cx, scope, name, slot);
     cx.report(Diagnostic::error(Code::UnknownName, span, format!("`{name}` is not known here")).maybe_hint(hint));
     Value::UNKNOWN
@@ -172,6 +190,10 @@ fn name_hint<'a>(cx: &Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, slot: Slot)
     let mut known: Vec<&str> = slot.words.to_vec();
     known.extend(visible(cx, scope));
     known.extend(vocabulary::names(slot));
+    if slot.kind == Some(Kind::Colour) {
+        return did_you_mean(name, known)
+            .or_else(|| Some("colours are `#rrggbb`, or CSS names such as `navy`".to_owned()));
+    }
     did_you_mean(name, known).or_else(|| {
         let words = slot.words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>();
         (!words.is_empty()).then(|| format!("this takes {}", words.join(", ")))
@@ -212,7 +234,12 @@ pub(super) fn force<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, 
     match entry.binding {
         Binding::Value(value) => value,
         Binding::Busy => {
-            let message = format!("`{name}` needs itself");
+            let from = cx.naming.iter().rposition(|(busy, _)| busy == name).map_or(cx.naming.len(), |at| at + 1);
+            let way: Vec<String> = cx.naming[from..].iter().map(|(busy, _)| format!("`{busy}`")).collect();
+            let message = match way.is_empty() {
+                true => format!("`{name}` needs itself"),
+                false => format!("`{name}` needs itself by way of {}", way.join(" and ")),
+            };
             let diagnostic = Diagnostic::error(Code::Cycle, span, message).note(entry.span, "declared here");
             cx.report(diagnostic);
             Value::UNKNOWN
@@ -296,7 +323,10 @@ pub(super) fn module_of<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, base: &'
     };
     let module = &cx.modules[scope.module];
     let found = module.aliases.get(name.as_str()).copied();
-    if found.is_none() {
+    if found.is_none() && visible(cx, scope).contains(&name.as_str()) {
+        let message = format!("`{name}` is a value, and only modules have members");
+        cx.report(Diagnostic::error(Code::Type, base.span, message));
+    } else if found.is_none() && !module.lost.contains(&name.as_str()) {
         let mut hint = did_you_mean(name, module.aliases.keys().copied());
         if module.aliases.is_empty() {
             hint = Some(format!("`import \"…\" as {name}` gives a file this name"));
@@ -376,8 +406,16 @@ fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span
         cx.report(call::not_yet(name, span));
         return;
     }
+    if visible(cx, scope).contains(&name) {
+        let message = format!("`{name}` is a value, and only functions are called");
+        cx.report(Diagnostic::error(Code::Type, span, message));
+        return;
+    }
     let modules = cx.modules;
     let module = &modules[scope.module];
+    if module.is_incomplete {
+        return;
+    }
     let mut known: Vec<&str> = module.functions.keys().copied().collect();
     known.extend(module.opened.iter().flat_map(|&opened| modules[opened].functions.keys().copied()));
     // What fits the place comes first: a misspelt shape is no square root.
@@ -416,10 +454,11 @@ fn call_function<'a>(
     let inner =
         bind_arguments(cx, (scope, operand_slot(slot)), &what, (function.module, function.params), arguments, span);
     let Some(inner) = inner else { return Value::UNKNOWN };
-    if cx.is_dead() || !cx.count_iteration(span) {
+    if cx.is_dead() || cx.is_runaway(function.name.span) || !cx.count_iteration(span) {
         return Value::UNKNOWN;
     }
-    cx.nested(span, |cx| eval(cx, &inner, function.body, Slot::ANY)).unwrap_or(Value::UNKNOWN)
+    let name = function.name.span;
+    cx.called(name, span, |cx| eval(cx, &inner, function.body, Slot::ANY)).unwrap_or(Value::UNKNOWN)
 }
 
 /// Evaluates a function's body once with unknown arguments.
@@ -463,8 +502,6 @@ pub(super) fn bind_arguments<'a>(
     let places = call::assign(cx, what, &names, arguments);
     let scope = Scope::inside(&cx.modules[module].scope);
     let mut whole = true;
-    // An argument that no parameter takes is most likely a required one misspelt.
-    let misnamed = arguments.iter().zip(&places).any(|(argument, place)| argument.name.is_some() && place.is_none());
     for argument in arguments.iter().zip(&places).filter(|(_, place)| place.is_none()).map(|(argument, _)| argument) {
         eval(cx, caller, &argument.value, Slot::of(Kind::Field));
     }
@@ -484,7 +521,8 @@ pub(super) fn bind_arguments<'a>(
             }
             (None, Some(default)) => expect(cx, &scope, default, pinned.map_or(Slot::ANY, Slot::of)),
             (None, None) => {
-                if !misnamed {
+                // An argument that none of the parameters took may have been meant for this one.
+                if !places.contains(&None) {
                     let message = format!("{what} needs `{}`", param.name.name);
                     let diagnostic = Diagnostic::error(Code::Missing, span, message);
                     cx.report(diagnostic.note(param.name.span, "declared here"));
@@ -523,6 +561,14 @@ fn index<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, list: &'a Expr, index: 
     };
     cx.report_value(Diagnostic::error(Code::Range, index.span, message).label(format!("there is no member {number}")));
     Value::UNKNOWN
+}
+
+/// Where the members of a list stand; the whole list where it was not written as one.
+pub(super) fn member_spans(expr: &Expr, count: usize) -> Vec<Span> {
+    match &expr.kind {
+        ExprKind::List(members) if members.len() == count => members.iter().map(|member| member.span).collect(),
+        _ => vec![expr.span; count],
+    }
 }
 
 fn range<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, low: &'a Expr, high: &'a Expr) -> Value {
@@ -685,9 +731,7 @@ fn matching<'a>(
     span: Span,
 ) -> Value {
     let value = eval(cx, scope, subject, Slot::ANY);
-    if !check_patterns(cx, scope, (subject, &value), arms, span) {
-        return Value::UNKNOWN;
-    }
+    let covered = check_patterns(cx, scope, (subject, &value), arms, span);
     if value.is_unknown() {
         let values: Vec<Value> = arms.iter().map(|arm| cx.dead(|cx| eval(cx, scope, &arm.value, slot))).collect();
         return common(values);
@@ -700,6 +744,7 @@ fn matching<'a>(
     }
     match taken {
         Some(taken) => eval(cx, scope, &arms[taken].value, slot),
+        None if !covered => Value::UNKNOWN,
         None => {
             let message = format!("no arm covers {}", value.text());
             let diagnostic = Diagnostic::error(Code::Match, subject.span, message);
@@ -720,7 +765,7 @@ fn holds(pattern: &Pattern, value: &Value) -> bool {
     }
 }
 
-/// Reports patterns that can never match, match twice, or leave something uncovered; whether all is well.
+/// Patterns that can never match, match twice, or leave something uncovered whatever the value is; whether they cover all.
 fn check_patterns(
     cx: &mut Cx<'_, '_>,
     scope: &Rc<Scope<'_>>,
@@ -728,7 +773,6 @@ fn check_patterns(
     arms: &[ast::Arm],
     span: Span,
 ) -> bool {
-    let mut sound = true;
     for (i, arm) in arms.iter().enumerate() {
         let expected = match arm.pattern {
             Pattern::Any => None,
@@ -742,7 +786,6 @@ fn check_patterns(
         {
             let message = format!("this matches {}, but the value is {}", expected.noun(), value.describe());
             cx.report(Diagnostic::error(Code::Type, arm.span, message));
-            sound = false;
         }
         if let Some(earlier) =
             arms[..i].iter().find(|earlier| earlier.pattern == arm.pattern || earlier.pattern == Pattern::Any)
@@ -751,8 +794,8 @@ fn check_patterns(
             cx.report(Diagnostic::error(Code::Match, arm.span, message).note(earlier.span, "this one"));
         }
     }
-    if !sound || arms.iter().any(|arm| arm.pattern == Pattern::Any) {
-        return sound;
+    if arms.iter().any(|arm| arm.pattern == Pattern::Any) {
+        return true;
     }
     let choices = match (&subject.kind, value.kind()) {
         (_, Some(Kind::Bool)) => vec![Value::Bool(true), Value::Bool(false)],
@@ -761,13 +804,13 @@ fn check_patterns(
     };
     let missed: Vec<String> =
         choices.iter().filter(|choice| !arms.iter().any(|arm| holds(&arm.pattern, choice))).map(Value::text).collect();
-    if choices.is_empty() || !missed.is_empty() {
-        let message = match missed.is_empty() {
-            true => "the match does not cover every value".to_owned(),
-            false => format!("the match does not cover {}", missed.join(", ")),
-        };
-        cx.report(Diagnostic::error(Code::Match, span, message).hint("a last arm `_ => …` covers the rest"));
-        return false;
+    if !choices.is_empty() && missed.is_empty() {
+        return true;
     }
-    true
+    let message = match missed.is_empty() {
+        true => "the match does not cover every value".to_owned(),
+        false => format!("the match does not cover {}", missed.join(", ")),
+    };
+    cx.report(Diagnostic::error(Code::Match, span, message).hint("a last arm `_ => …` covers the rest"));
+    false
 }

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use crate::diag::{Code, Diagnostic, did_you_mean};
 use crate::scene::{Experiment, Factor, ParamValue};
 use crate::span::Span;
-use crate::syntax::ast::{Ident, Property, StatementKind};
+use crate::syntax::ast::{Expr, ExprKind, Ident, Property, StatementKind};
 
 use super::convert::Slot;
 use super::cx::Cx;
@@ -66,7 +66,8 @@ fn one<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &Ident, properties:
             "images" => experiment.images = factors(cx, scope, property),
             "reference" => {
                 if let Value::List(members) = eval::expect(cx, scope, &property.value, Slot::of(Kind::List)) {
-                    for member in members.iter() {
+                    let spans = eval::member_spans(&property.value, members.len());
+                    for (member, span) in members.iter().zip(spans) {
                         experiment.reference.push(reference(cx, member, span));
                     }
                 }
@@ -80,7 +81,12 @@ fn one<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &Ident, properties:
             }
         }
     }
+    let is_unknown = |key: &&Ident| !PROPERTIES.contains(&key.name.as_str());
     if !seen.iter().any(|key| key.name == "seeds") {
+        // A property that is not known may have been meant for it.
+        if seen.iter().any(is_unknown) {
+            return None;
+        }
         let message = format!("the experiment `{}` has no `seeds`", name.name);
         cx.report(Diagnostic::error(Code::Missing, name.span, message).hint("`seeds: 0 .. 99`"));
         return None;
@@ -135,11 +141,24 @@ fn factors<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, property: &'a Propert
             cx.report(Diagnostic::error(Code::Range, member.span, message).label("an empty list"));
             continue;
         }
-        let levels: Vec<ParamValue> =
-            levels.into_iter().filter_map(|level| params::level(cx, &member.name, level, member.span)).collect();
+        let spans = match written(property, &member.name) {
+            Some(expr) => eval::member_spans(expr, levels.len()),
+            None => vec![member.span; levels.len()],
+        };
+        let levels: Vec<ParamValue> = levels
+            .into_iter()
+            .zip(spans)
+            .filter_map(|(level, span)| params::level(cx, &member.name, level, span))
+            .collect();
         factors.push(Factor { param: member.name.clone(), levels });
     }
     factors
+}
+
+/// How a member of a record is written, where the record is.
+fn written<'e>(property: &'e Property, name: &str) -> Option<&'e Expr> {
+    let ExprKind::Record(members) = &property.value.kind else { return None };
+    members.iter().find(|member| member.name.name == name).map(|member| &member.value)
 }
 
 fn reference(cx: &mut Cx<'_, '_>, value: &Value, span: Span) -> Vec<(String, ParamValue)> {

@@ -4,7 +4,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use crate::diag::{Code, Diagnostic, did_you_mean};
-use crate::field::{Channel, Image};
+use crate::field::{Channel, Image, ImageError};
 use crate::geom::Rect;
 use crate::loader;
 use crate::region::Region;
@@ -57,7 +57,17 @@ pub(super) fn image(call: &mut Call<'_, '_, '_>, channel: &'static str) -> Optio
         Err(error) => {
             let span = call.span_of("file");
             let message = format!("`{}`: {error}", key.0);
-            call.cx.report_value(Diagnostic::error(Code::Image, span, message).hint("pictures are PNG or JPEG"));
+            call.cx.report_value(match error {
+                ImageError::TooLarge { width, height, .. } => {
+                    let needed = (u64::from(width) * u64::from(height)).div_ceil(1_000_000);
+                    let hint = format!("`--limit megapixels={needed}` lifts the limit, or make the picture smaller");
+                    Diagnostic::error(Code::Limit, span, message).hint(hint)
+                }
+                ImageError::UnknownFormat => {
+                    Diagnostic::error(Code::Image, span, message).hint("save it as PNG or JPEG")
+                }
+                ImageError::Empty | ImageError::Damaged(_) => Diagnostic::error(Code::Image, span, message),
+            });
             None
         }
     };

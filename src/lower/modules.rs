@@ -38,6 +38,10 @@ pub(super) struct Module<'a> {
     pub(super) aliases: BTreeMap<&'a str, usize>,
     /// Imports without.
     pub(super) opened: Vec<usize>,
+    /// The names of imports that could not be read, which was reported.
+    pub(super) lost: Vec<&'a str>,
+    /// Whether an import without a name could not be read: nobody knows what it would have brought.
+    pub(super) is_incomplete: bool,
 }
 
 /// A declared tone.
@@ -125,6 +129,13 @@ impl Reader<'_> {
     }
 
     fn parse(&mut self, path: &str, from: Option<Span>) -> Option<Document> {
+        let extension = path.rsplit_once('.').map_or("", |(_, extension)| extension);
+        let is_toml = extension.eq_ignore_ascii_case("toml");
+        if from.is_some() && !is_toml && !extension.eq_ignore_ascii_case("kake") && self.loader.load(path).is_ok() {
+            let hint = "imports are scenes and libraries: `.kake` or `.toml` files".to_owned();
+            self.report(Code::Import, from, format!("`{path}` is no scene"), Some(hint));
+            return None;
+        }
         let bytes = match self.loader.load(path) {
             Ok(bytes) => bytes,
             Err(error) => {
@@ -142,8 +153,7 @@ impl Reader<'_> {
                 return None;
             }
         };
-        let extension = path.rsplit_once('.').map_or("", |(_, extension)| extension);
-        let syntax = if extension.eq_ignore_ascii_case("toml") { Syntax::Toml } else { Syntax::Kake };
+        let syntax = if is_toml { Syntax::Toml } else { Syntax::Kake };
         let source = self.sources.add(path, text, syntax);
         let (document, diagnostics) = match syntax {
             Syntax::Kake => syntax::kake::parse(source, text),
@@ -235,9 +245,18 @@ fn declare_one<'a>(index: usize, file: &'a File, diagnostics: &mut Vec<Diagnosti
         functions: BTreeMap::new(),
         aliases: BTreeMap::new(),
         opened: Vec::new(),
+        lost: Vec::new(),
+        is_incomplete: false,
     };
-    for statement in &file.document.statements {
+    for (i, statement) in file.document.statements.iter().enumerate() {
         let twice = match &statement.kind {
+            StatementKind::Import { alias, .. } if !file.imports.iter().any(|(import, _)| *import == i) => {
+                match alias {
+                    Some(alias) => module.lost.push(&alias.name),
+                    None => module.is_incomplete = true,
+                }
+                None
+            }
             StatementKind::Tone { name, params, body } => {
                 let tone = Tone { module: index, name, params, body };
                 module.tones.insert(&name.name, tone).map(|earlier| (name, earlier.name.span))
@@ -312,7 +331,7 @@ fn clashes(modules: &[Module<'_>], index: usize, imported: usize, import: Span, 
 pub(super) fn check_declarations(cx: &mut Cx<'_, '_>) {
     let modules = cx.modules;
     // Imports come after the file that imports them; their mistakes are reported at their own places all the same.
-    for module in modules {
+    for (index, module) in modules.iter().enumerate() {
         for statement in &module.document.statements {
             match &statement.kind {
                 StatementKind::Let(binding)
@@ -321,8 +340,12 @@ pub(super) fn check_declarations(cx: &mut Cx<'_, '_>) {
                 | StatementKind::Param { binding, .. } => {
                     eval::force(cx, &module.scope, &binding.name.name, binding.name.span);
                 }
-                StatementKind::Fn { name, .. } => eval::check_function(cx, module.functions[name.name.as_str()]),
-                StatementKind::Tone { name, .. } => tone::check(cx, module.tones[name.name.as_str()]),
+                StatementKind::Fn { name, params, body } => {
+                    eval::check_function(cx, Function { module: index, name, params, body });
+                }
+                StatementKind::Tone { name, params, body } => {
+                    tone::check(cx, Tone { module: index, name, params, body });
+                }
                 _ => {}
             }
         }

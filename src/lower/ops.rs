@@ -264,6 +264,14 @@ fn disagree(cx: &mut Cx<'_, '_>, op: BinaryOp, a: &Value, b: &Value, span: Span)
     Value::UNKNOWN
 }
 
+fn incomparable(cx: &mut Cx<'_, '_>, op: BinaryOp, a: &Value, b: &Value, span: Span) -> Value {
+    let message = format!("`{}` cannot compare {} and {}", op.symbol(), a.describe(), b.describe());
+    let measured = |value| Operand::of(value).is_some_and(|operand| operand.unit != FieldUnit::Bool);
+    let code = if measured(a) && measured(b) { Code::Unit } else { Code::Type };
+    cx.report(Diagnostic::error(code, span, message));
+    Value::Unknown(Some(Kind::Bool))
+}
+
 fn order(cx: &mut Cx<'_, '_>, op: BinaryOp, a: Value, b: Value, span: Span) -> Value {
     if matches!(a, Value::Unknown(None)) || matches!(b, Value::Unknown(None)) {
         return Value::Unknown(Some(Kind::Bool));
@@ -273,9 +281,7 @@ fn order(cx: &mut Cx<'_, '_>, op: BinaryOp, a: Value, b: Value, span: Span) -> V
         _ => None,
     };
     let Some((x, y, _)) = settled else {
-        let message = format!("`{}` cannot compare {} and {}", op.symbol(), a.describe(), b.describe());
-        cx.report(Diagnostic::error(Code::Type, span, message));
-        return Value::Unknown(Some(Kind::Bool));
+        return incomparable(cx, op, &a, &b, span);
     };
     let (x, y, operator) = match op {
         BinaryOp::Less => (x, y, Operator::Less),
@@ -303,9 +309,7 @@ fn equality(cx: &mut Cx<'_, '_>, op: BinaryOp, a: Value, b: Value, span: Span) -
         _ => None,
     };
     let Some((x, y, _)) = settled else {
-        let message = format!("`{}` cannot compare {} and {}", op.symbol(), a.describe(), b.describe());
-        cx.report(Diagnostic::error(Code::Type, span, message));
-        return Value::Unknown(Some(Kind::Bool));
+        return incomparable(cx, op, &a, &b, span);
     };
     let equal = combine(x, y, Operator::Equal, FieldUnit::Bool);
     if negate { map(equal, Function::Not, FieldUnit::Bool).value() } else { equal.value() }

@@ -109,7 +109,8 @@ pub(super) fn settle<'a>(
             within(cx, value, allowed, set.span)
         }
     };
-    let settled = Settled { kind, domain: domain.and_then(|(domain, _)| domain), default: text, value: value.clone() };
+    let domain = domain.and_then(|(domain, span)| Some((domain?, span)));
+    let settled = Settled { kind, domain, default: text, value: value.clone() };
     cx.settled.insert((scope.module, name.clone()), settled);
     value
 }
@@ -118,7 +119,8 @@ pub(super) fn settle<'a>(
 #[derive(Debug, Clone)]
 pub(super) struct Settled {
     kind: Option<Kind>,
-    domain: Option<Value>,
+    /// The range or choices, with their place.
+    domain: Option<(Value, Span)>,
     default: ParamValue,
     value: Value,
 }
@@ -229,7 +231,7 @@ pub(super) fn level<'a>(cx: &mut Cx<'a, '_>, name: &str, value: Value, span: Spa
     let (module, _, short) = settable(cx).into_iter().find(|(_, full, _)| full == name)?;
     let settled = cx.settled.get(&(module, short)).cloned()?;
     let value = coerce(cx, value, settled.kind.map_or(Slot::ANY, Slot::of), span);
-    let value = within(cx, value, settled.domain.as_ref().map(|domain| (domain, span)), span);
+    let value = within(cx, value, settled.domain.as_ref().map(|(domain, place)| (domain, *place)), span);
     (!value.is_unknown()).then(|| param_value(&value))
 }
 
@@ -251,7 +253,7 @@ pub(super) fn list(cx: &Cx<'_, '_>) -> Vec<Param> {
             name: full,
             doc: doc.map(|doc| doc.text.clone()),
             ty: settled.kind.map_or("value", Kind::name).to_owned(),
-            domain: settled.domain.as_ref().and_then(|domain| match domain {
+            domain: settled.domain.as_ref().and_then(|(domain, _)| match domain {
                 Value::Range(ends) => Some(ParamDomain::Range(param_value(&ends.0), param_value(&ends.1))),
                 Value::List(choices) => Some(ParamDomain::Choices(choices.iter().map(param_value).collect())),
                 _ => None,

@@ -83,33 +83,31 @@ pub(super) fn instantiate<'a>(
     if !cx.count_iteration(span) {
         return Value::Unknown(Some(Kind::Tone));
     }
-    let value = enter(cx, tone, span, &scope);
+    let name = tone.name.span;
+    if cx.is_runaway(name) {
+        return Value::Unknown(Some(Kind::Tone));
+    }
+    // Without parameters nothing can end the round.
+    if tone.params.is_empty() && cx.is_under_way(name) {
+        let message = format!("the tone {what} is derived from itself");
+        cx.report(Diagnostic::error(Code::Cycle, span, message).note(name, "declared here"));
+        cx.give_up();
+        return Value::Unknown(Some(Kind::Tone));
+    }
+    let value = cx.called(name, span, |cx| properties(cx, &scope, tone)).flatten();
     value.map_or(Value::Unknown(Some(Kind::Tone)), |tone| Value::Tone(Rc::new(tone)))
 }
 
 /// Evaluates a tone that nothing may paint with, with unknown arguments.
 pub(super) fn check<'a>(cx: &mut Cx<'a, '_>, tone: Tone<'a>) {
     let scope = eval::unknown_arguments(cx, tone.module, tone.params);
-    let checked = enter(cx, tone, tone.name.span, &scope);
-    if let (Some(tone), ToneBody::Properties(_)) = (checked, tone.body)
+    let name = tone.name.span;
+    let checked = cx.called(name, name, |cx| properties(cx, &scope, tone));
+    if let (Some(Some(tone)), ToneBody::Properties(_)) = (checked, tone.body)
         && !tone.broken
     {
         tone.check_pairs(cx);
     }
-}
-
-/// Evaluates a tone's properties, unless they are being evaluated already: a tone that derives from itself has none.
-fn enter<'a>(cx: &mut Cx<'a, '_>, tone: Tone<'a>, span: Span, scope: &Rc<Scope<'a>>) -> Option<ToneValue> {
-    let key = tone.name.span;
-    if cx.tones.contains(&key) {
-        let message = format!("the tone `{}` derives from itself", tone.name.name);
-        cx.report(Diagnostic::error(Code::Cycle, key, message).label("this leads back to it"));
-        return None;
-    }
-    cx.tones.push(key);
-    let value = cx.nested(span, |cx| properties(cx, scope, tone)).flatten();
-    cx.tones.pop();
-    value
 }
 
 fn properties<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, tone: Tone<'a>) -> Option<ToneValue> {
@@ -173,7 +171,10 @@ pub(super) fn expect_tone<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, expr: 
             let alias = module.aliases.iter().find(|(_, index)| modules[**index].tones.contains_key(name.as_str()));
             alias.map(|(alias, _)| format!("`{alias}.{name}` is a tone"))
         });
-        cx.report(Diagnostic::error(Code::UnknownTone, span, format!("there is no tone `{name}`")).maybe_hint(hint));
+        if !module.is_incomplete {
+            let message = format!("there is no tone `{name}`");
+            cx.report(Diagnostic::error(Code::UnknownTone, span, message).maybe_hint(hint));
+        }
         return Value::Unknown(Some(Kind::Tone));
     }
     eval::expect(cx, scope, expr, slot)
@@ -203,6 +204,23 @@ fn member_tone<'a>(
     Value::Unknown(Some(Kind::Tone))
 }
 
+/// A list of fills, one for each layer.
+fn fills(cx: &mut Cx<'_, '_>, members: &Rc<[Value]>, expr: &Expr) -> Value {
+    if members.is_empty() {
+        cx.report_value(Diagnostic::error(Code::Range, expr.span, "the list of fills is empty"));
+        return Value::Unknown(Some(Kind::Fill));
+    }
+    let spans = eval::member_spans(expr, members.len());
+    let mut fills = Vec::with_capacity(members.len());
+    for (member, span) in members.iter().zip(spans) {
+        match coerce(cx, member.clone(), Slot::of(Kind::Fill), span) {
+            Value::List(inner) => fills.extend(inner.iter().cloned()),
+            fill => fills.push(fill),
+        }
+    }
+    Value::List(fills.into())
+}
+
 impl ToneValue {
     fn give<'a>(&mut self, cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, property: &'a Property) {
         let name = &property.name;
@@ -223,7 +241,7 @@ impl ToneValue {
         };
         let value = eval::eval(cx, scope, &property.value, *slot);
         let value = match (*known, value) {
-            ("fill", Value::List(members)) => self.fills(cx, &members, property.value.span),
+            ("fill", Value::List(members)) => fills(cx, &members, &property.value),
             (_, value) => coerce(cx, value, *slot, property.value.span),
         };
         let value = self.held_to_range(cx, known, value, property.value.span);
@@ -232,26 +250,17 @@ impl ToneValue {
         self.properties.push(Given { name: known, value, span: property.value.span });
     }
 
-    fn fills(&mut self, cx: &mut Cx<'_, '_>, members: &Rc<[Value]>, span: Span) -> Value {
-        if members.is_empty() {
-            cx.report_value(Diagnostic::error(Code::Range, span, "the list of fills is empty"));
-            return Value::Unknown(Some(Kind::Fill));
-        }
-        let mut fills = Vec::with_capacity(members.len());
-        for member in members.iter() {
-            match coerce(cx, member.clone(), Slot::of(Kind::Fill), span) {
-                Value::List(inner) => fills.extend(inner.iter().cloned()),
-                fill => fills.push(fill),
-            }
-        }
-        Value::List(fills.into())
-    }
-
     fn held_to_range(&self, cx: &mut Cx<'_, '_>, name: &str, value: Value, span: Span) -> Value {
         let message = match (name, &value) {
             ("bleed", Value::Length(mm)) if *mm < 0.0 => "`bleed` must not be negative".to_owned(),
             ("k", Value::Field(TypedField { unit, .. })) if *unit != FieldUnit::Number => {
-                let message = format!("`k` takes numbers, not {}", unit.noun());
+                let found = match unit {
+                    FieldUnit::Number => "numbers",
+                    FieldUnit::Length => "lengths",
+                    FieldUnit::Angle => "angles",
+                    FieldUnit::Bool => "conditions",
+                };
+                let message = format!("`k` takes numbers, not {found}");
                 cx.report(Diagnostic::error(Code::Type, span, message));
                 return Value::Unknown(Some(Kind::Field));
             }

@@ -250,6 +250,23 @@ impl Value {
         }
     }
 
+    /// Whether it has at most so many members, those of its members counted too.
+    pub(super) fn has_at_most(&self, parts: u64) -> bool {
+        let mut left = parts;
+        let mut open: Vec<&Self> = vec![self];
+        while let Some(value) = open.pop() {
+            let before = open.len();
+            match value {
+                Self::Tuple(members) | Self::List(members) => open.extend(members.iter()),
+                Self::Record(members) => open.extend(members.iter().map(|member| &member.value)),
+                _ => {}
+            }
+            let Some(rest) = left.checked_sub((open.len() - before) as u64) else { return false };
+            left = rest;
+        }
+        true
+    }
+
     /// The number behind a number, length (mm), angle (rad) or percentage (share).
     pub(super) fn number(&self) -> Option<f64> {
         match self {

@@ -143,9 +143,10 @@ fn linear(call: &mut Call<'_, '_, '_>) -> Option<Value> {
 }
 
 fn noise(call: &mut Call<'_, '_, '_>) -> Option<Value> {
-    let scale = call.positive("scale", None)?;
-    let octaves = call.whole("octaves", 1, 16, Some(1))?;
-    let seed = call.whole("seed", 0, u32::MAX, Some(0))?;
+    let scale = call.positive("scale", None);
+    let octaves = call.whole("octaves", 1, 16, Some(1));
+    let seed = call.whole("seed", 0, u32::MAX, Some(0));
+    let (scale, octaves, seed) = (scale?, octaves?, seed?);
     let seed = if call.has("seed") { u64::from(seed) } else { call.cx.seed };
     // A noise is keyed by the name it is declared under, so that adding one leaves the others as they were.
     let name = match call.cx.naming.last_mut() {

@@ -35,10 +35,10 @@ pub(super) const SIGNATURES: &[Signature] = &[
         result: Some(Kind::Fill),
         params: &[PITCH, PEN, required("dash", LENGTH), optional("gap", LENGTH), INSET, SHORTEST, CAP, INK],
         build: |call| {
-            let hatch = hatch(call, DEFAULT_PEN)?;
-            let dash = call.positive("dash", None)?;
-            let gap = call.positive("gap", Some(dash))?;
-            fill(call, FillKind::Dashes { hatch, dash, gap })
+            let hatch = hatch(call, DEFAULT_PEN);
+            let dash = call.positive("dash", None);
+            let gap = call.positive("gap", dash.or(Some(DEFAULT_PEN)));
+            fill(call, FillKind::Dashes { hatch: hatch?, dash: dash?, gap: gap? })
         },
     },
     Signature {
@@ -47,11 +47,12 @@ pub(super) const SIGNATURES: &[Signature] = &[
         params: &[PITCH, optional("spacing", LENGTH), optional("radius", LENGTH), PEN, INSET, INK],
         build: |call| {
             // A dot without a radius is the touch of the pen.
-            let pen = call.positive("pen", Some(DEFAULT_PEN))?;
-            let radius = call.positive("radius", Some(pen / 2.0))?;
-            let hatch = hatch(call, radius * 2.0)?;
-            let spacing = call.positive("spacing", Some(hatch.pitch))?;
-            fill(call, FillKind::Dots { hatch, spacing, radius })
+            let pen = if call.has("radius") { DEFAULT_PEN } else { call.positive("pen", Some(DEFAULT_PEN))? };
+            let radius = call.positive("radius", Some(pen / 2.0));
+            let hatch = hatch(call, radius.map_or(pen, |radius| radius * 2.0));
+            let pitch = hatch.map_or(pen, |hatch| hatch.pitch);
+            let spacing = call.positive("spacing", Some(pitch));
+            fill(call, FillKind::Dots { hatch: hatch?, spacing: spacing?, radius: radius? })
         },
     },
     Signature {
@@ -74,14 +75,15 @@ fn fill(call: &Call<'_, '_, '_>, kind: FillKind) -> Option<Value> {
 }
 
 fn hatch(call: &mut Call<'_, '_, '_>, pen: Length) -> Option<Hatch> {
-    let pitch = call.positive("pitch", None)?;
-    let pen = call.positive("pen", Some(pen))?;
-    let inset = call.within("inset", 0.0, f64::INFINITY, 0.5)?;
+    // Arguments are all looked at before any is given up, so that each one's mistake is told.
+    let pitch = call.positive("pitch", None);
+    let pen = call.positive("pen", Some(pen));
+    let inset = call.within("inset", 0.0, f64::INFINITY, 0.5);
     // Shorter than two pens a stroke is a crumb rather than a line.
-    let shortest = call.not_negative("shortest", pen * 2.0)?;
+    let shortest = call.not_negative("shortest", pen.unwrap_or(DEFAULT_PEN) * 2.0);
     let cap = match call.word("cap") {
         Some("round") => Cap::Round,
         _ => Cap::Butt,
     };
-    Some(Hatch { pitch, pen, inset, shortest, cap })
+    Some(Hatch { pitch: pitch?, pen: pen?, inset: inset?, shortest: shortest?, cap })
 }

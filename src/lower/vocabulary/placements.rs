@@ -104,10 +104,11 @@ fn angles(rule: AngleRule) -> Option<Value> {
 }
 
 fn poisson(call: &mut Call<'_, '_, '_>) -> Option<Value> {
-    let radius = call.positive("radius", None)?;
-    let tries = call.whole("tries", 1, 10_000, Some(30))?;
+    // Arguments are all looked at before any is given up, so that each one's mistake is told.
+    let radius = call.positive("radius", None);
+    let tries = call.whole("tries", 1, 10_000, Some(30));
     let density = if call.has("density") { Some(call.number_field("density")?) } else { None };
-    placement(Placement::Poisson { radius, tries, density })
+    placement(Placement::Poisson { radius: radius?, tries: tries?, density })
 }
 
 fn uniform(call: &mut Call<'_, '_, '_>) -> Option<Value> {
@@ -142,7 +143,9 @@ fn grid(call: &mut Call<'_, '_, '_>) -> Option<Value> {
     let size = match (call.has("spacing"), cells) {
         (true, (false, false)) => GridSize::Spacing(call.positive("spacing", None)?),
         (false, (true, true)) => {
-            GridSize::Cells { columns: call.whole("columns", 1, MANY, None)?, rows: call.whole("rows", 1, MANY, None)? }
+            let columns = call.whole("columns", 1, MANY, None);
+            let rows = call.whole("rows", 1, MANY, None);
+            GridSize::Cells { columns: columns?, rows: rows? }
         }
         (true, _) => {
             let message = "`grid` takes `spacing`, or `columns` and `rows`, not both";

@@ -184,7 +184,18 @@ fn path(call: &mut Call<'_, '_, '_>) -> Option<Value> {
     not_empty(call, "the path encloses nothing", |call| match Region::path(&data.value, unit) {
         Ok(region) => Some(region),
         Err(error) => {
-            let diagnostic = Diagnostic::error(Code::Path, call.span_of("data"), error.to_string());
+            let whole = call.span_of("data");
+            let mut span = whole;
+            // Where the string is written without escapes its characters stand where the path's do.
+            let length = u32::try_from(data.value.len()).unwrap_or(u32::MAX);
+            if let Ok(offset) = u32::try_from(error.offset)
+                && offset < length
+                && whole.end - whole.start == length.saturating_add(2)
+            {
+                span.start = whole.start + 1 + offset;
+                span.end = span.start + 1;
+            }
+            let diagnostic = Diagnostic::error(Code::Path, span, error.to_string());
             call.cx.report_value(diagnostic.hint("path data looks like `M 0 0 L 10 0 L 10 10 Z`"));
             None
         }

@@ -32,9 +32,9 @@ pub(super) const SIGNATURES: &[Signature] = &[
         result: Some(Kind::Shape),
         params: &[optional("size", LENGTH), optional("overlap", NUMBER), optional("upright", BOOL)],
         build: |call| {
-            let size = call.maybe_positive("size")?;
-            let overlap = overlap(call)?;
-            shape(Shape::Hexagon { size, overlap, upright: call.flag("upright") })
+            let size = call.maybe_positive("size");
+            let overlap = overlap(call);
+            shape(Shape::Hexagon { size: size?, overlap: overlap?, upright: call.flag("upright") })
         },
     },
     Signature {
@@ -42,9 +42,9 @@ pub(super) const SIGNATURES: &[Signature] = &[
         result: Some(Kind::Shape),
         params: &[optional("inset", LENGTH), optional("round", LENGTH)],
         build: |call| {
-            let inset = call.not_negative("inset", Length::ZERO)?;
-            let round = call.not_negative("round", Length::ZERO)?;
-            shape(Shape::Voronoi { inset, round })
+            let inset = call.not_negative("inset", Length::ZERO);
+            let round = call.not_negative("round", Length::ZERO);
+            shape(Shape::Voronoi { inset: inset?, round: round? })
         },
     },
 ];
@@ -62,14 +62,16 @@ fn overlap(call: &mut Call<'_, '_, '_>) -> Option<Option<f64>> {
 }
 
 fn rect(call: &mut Call<'_, '_, '_>) -> Option<Value> {
-    let size = call.maybe_positive("size")?;
-    let width = call.maybe_positive("width")?;
-    let height = call.maybe_positive("height")?;
+    // Arguments are all looked at before any is given up, so that each one's mistake is told.
+    let size = call.maybe_positive("size");
+    let width = call.maybe_positive("width");
+    let height = call.maybe_positive("height");
+    let overlap = overlap(call);
+    let (size, width, height, overlap) = (size?, width?, height?, overlap?);
     if size.is_some() && (width.is_some() || height.is_some()) {
         let message = "`rect` takes `size`, or `width` and `height`, not both";
         call.cx.report(Diagnostic::error(Code::Duplicate, call.span, message));
         return None;
     }
-    let overlap = overlap(call)?;
     shape(Shape::Rect { width: width.or(size), height: height.or(size), overlap, upright: call.flag("upright") })
 }
