@@ -59,21 +59,22 @@ pub(super) struct Given {
     pub(super) span: Span,
 }
 
-/// Which parameter takes each argument; `None` for those that none takes, which were reported.
+/// Which parameter takes each argument, by its place among the names and then those that a later version knows; `None` for those that none takes, which were reported.
 pub(super) fn assign(
     cx: &mut Cx<'_, '_>,
     what: &str,
-    names: &[&str],
+    (names, later): (&[&str], &[&str]),
     arguments: &[ast::Argument],
 ) -> Vec<Option<usize>> {
-    let mut taken: Vec<Option<Span>> = vec![None; names.len()];
+    let known = || names.iter().chain(later);
+    let mut taken: Vec<Option<Span>> = vec![None; names.len() + later.len()];
     let mut next = 0;
     let mut places = Vec::with_capacity(arguments.len());
     for argument in arguments {
         let span = argument.name.as_ref().map_or(argument.value.span, |name| name.span);
         let place = match &argument.name {
             Some(name) => {
-                let place = names.iter().position(|known| spelling(known) == spelling(&name.name));
+                let place = known().position(|known| spelling(known) == spelling(&name.name));
                 if place.is_none() {
                     let message = format!("{what} has no argument `{}`", name.name);
                     let hint = did_you_mean(&name.name, names.iter().copied()).or_else(|| takes(what, names));
@@ -105,7 +106,7 @@ pub(super) fn assign(
         places.push(match place {
             Some(place) => match taken[place] {
                 Some(earlier) => {
-                    let message = format!("{what} is given `{}` twice", names[place]);
+                    let message = format!("{what} is given `{}` twice", known().nth(place).unwrap_or(&""));
                     cx.report(Diagnostic::error(Code::Duplicate, span, message).note(earlier, "first given here"));
                     None
                 }
@@ -137,8 +138,12 @@ pub(super) fn call<'a>(
     mut eval: impl FnMut(&mut Cx<'a, '_>, &'a ast::Expr, Slot) -> Value,
 ) -> Value {
     let what = format!("`{}`", signature.name);
-    let names: Vec<&str> = signature.params.iter().map(|param| param.name).collect();
-    let places = assign(cx, &what, &names, arguments);
+    // Those that a later version knows come last in every signature.
+    let names: Vec<&str> =
+        signature.params.iter().filter(|param| param.need != Need::Later).map(|param| param.name).collect();
+    let later: Vec<&str> =
+        signature.params.iter().filter(|param| param.need == Need::Later).map(|param| param.name).collect();
+    let places = assign(cx, &what, (&names, &later), arguments);
     let lost = places.contains(&None);
     let mut given: Vec<Option<Given>> = signature.params.iter().map(|_| None).collect();
     let mut whole = true;

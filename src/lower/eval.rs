@@ -499,7 +499,7 @@ pub(super) fn bind_arguments<'a>(
     span: Span,
 ) -> Option<Rc<Scope<'a>>> {
     let names: Vec<&str> = params.iter().map(|param| param.name.name.as_str()).collect();
-    let places = call::assign(cx, what, &names, arguments);
+    let places = call::assign(cx, what, (&names, &[]), arguments);
     let scope = Scope::inside(&cx.modules[module].scope);
     let mut whole = true;
     for argument in arguments.iter().zip(&places).filter(|(_, place)| place.is_none()).map(|(argument, _)| argument) {

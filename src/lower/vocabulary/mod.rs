@@ -79,7 +79,12 @@ pub(super) fn callables() -> impl Iterator<Item = &'static str> {
 
 /// The names that can be called where values of one kind of the scene's own are asked for.
 pub(super) fn fitting(slot: Slot) -> Vec<&'static str> {
-    let tables = TABLES.iter().filter(|(kind, _)| kind.is_some() && *kind == slot.kind);
+    let fits = |kind: Option<Kind>| match kind {
+        Some(_) => kind == slot.kind,
+        // Mathematics yields fields of fields.
+        None => slot.kind == Some(Kind::Field),
+    };
+    let tables = TABLES.iter().filter(|(kind, _)| fits(*kind));
     tables.flat_map(|(_, table)| table.iter().map(|signature| signature.name)).collect()
 }
 
