@@ -1,22 +1,22 @@
-//! How long the stages take on canvases of ten thousand to a million tiles: `cargo bench`.
+//! How long each stage takes on scenes of ten thousand to a million tiles of about eleven strokes, from sites to SVG
+//! text: `cargo bench --bench stages`. The items are tiles, so that the throughput says whether a stage's time grows in
+//! step with them.
 
 use divan::Bencher;
-use kakeami::field::Field;
-use kakeami::geom::Length;
-use kakeami::pass::{link, place, turn};
-use kakeami::region::Region;
-use kakeami::scene::{
-    AngleRule, Blend, Canvas, Cap, Colour, Depth, Domain, Edge, Fill, FillKind, Hatch, Limits, Link, Over, Paint,
-    Placement, Shape, Stack, Tone,
-};
-use kakeami::span::{Sources, Span, Syntax};
-use kakeami::stage::{Graph, Sites};
+use divan::counter::ItemsCount;
+use kakeami::PaintStages;
+use kakeami::drawing::Drawing;
+use kakeami::loader::MemoryLoader;
+use kakeami::lower::{LowerConfig, lower};
+use kakeami::pass::draw::{Assembly, Setting};
+use kakeami::pass::{cut, link, place, turn};
+use kakeami::scene::{Canvas, Limits, Link, Paint};
 
 /// About how many tiles there are.
-const TILES: [u32; 3] = [10_000, 100_000, 1_000_000];
+const TILES: [u32; 4] = [10_000, 90_000, 100_000, 1_000_000];
 
-/// The distance of two sites in millimetres.
-const RADIUS: f64 = 0.6;
+/// Poisson-disk sampling finds so many sites in a square of its radius.
+const DENSITY: f64 = 0.627;
 
 fn main() {
     divan::main();
@@ -24,76 +24,84 @@ fn main() {
 
 /// The report's tone on a canvas of so many tiles.
 fn scene(tiles: u32) -> (Canvas, Paint) {
-    // Poisson-disk sampling finds 0.627 sites in a square of the radius.
-    let side = Length::mm(RADIUS * (f64::from(tiles) / 0.627).sqrt());
-    let canvas = Canvas {
-        width: side,
-        height: side,
-        pixels: [512, 512],
-        dpi: 600.0,
-        paper: Some(Colour::WHITE),
-        ink: Colour::BLACK,
-        depth: Depth::Eight,
-        unit: Length::mm(1.0),
-    };
-    let span = Span::new(Sources::new().add("bench", "", Syntax::Kake), 0, 0);
-    let hatch = Hatch {
-        pitch: Length::mm(0.08),
-        pen: Length::mm(0.02),
-        inset: 0.5,
-        shortest: Length::mm(0.04),
-        cap: Cap::Butt,
-    };
-    let tone = Tone {
-        place: Placement::Poisson { radius: Length::mm(RADIUS), tries: 30, density: None },
-        place_span: span,
-        domain: Domain::Canvas,
-        bleed: None,
-        shape: Shape::Rect { width: Some(Length::mm(0.88)), height: None, overlap: None, upright: false },
-        link: Link::Delaunay,
-        angle: AngleRule::Bfs { candidates: 360 },
-        fill: vec![Fill { kind: FillKind::Lines(hatch), ink: None }],
-        k: Field::constant(2.0),
-        k_span: span,
-        blend: Blend::Step,
-        stack: Stack::Cover,
-        over: Over::Print,
-        ground: None,
-        edge: Edge::Clip,
-    };
-    let region = Region::rect(canvas.bounds());
-    let paint = Paint { name: "plate".to_owned(), tone_name: "plate".to_owned(), seed: 1, region, tone, span };
-    (canvas, paint)
+    let side = 0.6 * (f64::from(tiles) / DENSITY).sqrt();
+    let text = format!(
+        "canvas {{ size: ({side}mm, {side}mm) }}
+         seed 1
+         tone plate {{
+           place: poisson(radius: 0.6mm)
+           shape: rect(size: 0.88mm)
+           angle: bfs()
+           bleed: 0mm
+           fill: lines(pitch: 0.08mm, pen: 0.005mm)
+           k: 1
+         }}
+         paint canvas with plate"
+    );
+    let mut loader = MemoryLoader::default();
+    loader.files.insert("bench.kake".to_owned(), text.into_bytes().into());
+    let lowered = lower("bench.kake", &loader, &LowerConfig::default());
+    let scene = lowered.scene.unwrap_or_else(|| unreachable!("{:?}", lowered.diagnostics));
+    let paint = kakeami::paints(&scene).next().cloned();
+    (scene.canvas.clone(), paint.unwrap_or_else(|| unreachable!("the scene paints once")))
 }
 
-fn sites(tiles: u32) -> (Paint, Sites) {
-    let (canvas, paint) = scene(tiles);
-    match place::place(&paint, &canvas, &Limits::default()) {
-        Ok(sites) => (paint, sites),
+fn stages(canvas: &Canvas, paint: &Paint) -> PaintStages {
+    match PaintStages::new(paint, canvas, &Limits::default(), &mut (), &mut Vec::new()) {
+        Ok(stages) => stages,
         Err(diagnostic) => unreachable!("{}", diagnostic.message),
     }
 }
 
-fn linked(tiles: u32) -> (Paint, Sites, Graph) {
-    let (paint, sites) = sites(tiles);
-    let graph = link::link(&sites, Link::Delaunay);
-    (paint, sites, graph)
+fn drawing(canvas: &Canvas, paint: &Paint, stages: &PaintStages) -> Drawing {
+    let limits = Limits::default();
+    let mut assembly = Assembly::new(canvas, &limits);
+    let setting = Setting { groups: Vec::new(), ink: canvas.ink };
+    match assembly.paint(paint, &setting, &stages.borrow()) {
+        Ok(()) => assembly.finish(),
+        Err(diagnostic) => unreachable!("{}", diagnostic.message),
+    }
 }
 
 #[divan::bench(args = TILES, sample_count = 5)]
-fn place(bencher: Bencher<'_, '_>, tiles: u32) {
+fn stage_1_place(bencher: Bencher<'_, '_>, tiles: u32) {
     let (canvas, paint) = scene(tiles);
-    bencher.bench(|| place::place(&paint, &canvas, &Limits::default()));
+    bencher.counter(ItemsCount::new(tiles)).bench(|| place::place(&paint, &canvas, &Limits::default()));
 }
 
 #[divan::bench(args = TILES, sample_count = 5)]
-fn link(bencher: Bencher<'_, '_>, tiles: u32) {
-    let (_, sites) = sites(tiles);
-    bencher.bench(|| link::link(&sites, Link::Delaunay));
+fn stage_2_link(bencher: Bencher<'_, '_>, tiles: u32) {
+    let (canvas, paint) = scene(tiles);
+    let stages = stages(&canvas, &paint);
+    bencher.counter(ItemsCount::new(tiles)).bench(|| link::link(&stages.sites, Link::Delaunay));
 }
 
 #[divan::bench(args = TILES, sample_count = 5)]
-fn turn(bencher: Bencher<'_, '_>, tiles: u32) {
-    let (paint, sites, graph) = linked(tiles);
-    bencher.bench(|| turn::turn(&paint, &sites, &graph));
+fn stage_3_turn(bencher: Bencher<'_, '_>, tiles: u32) {
+    let (canvas, paint) = scene(tiles);
+    let stages = stages(&canvas, &paint);
+    bencher.counter(ItemsCount::new(tiles)).bench(|| turn::turn(&paint, &stages.sites, &stages.graph));
+}
+
+#[divan::bench(args = TILES, sample_count = 5)]
+fn stage_4_cut(bencher: Bencher<'_, '_>, tiles: u32) {
+    let (canvas, paint) = scene(tiles);
+    let PaintStages { sites, graph, angles, .. } = stages(&canvas, &paint);
+    bencher
+        .counter(ItemsCount::new(tiles))
+        .bench(|| cut::cut(&paint, &canvas, &sites, &graph, &angles, &mut Vec::new()));
+}
+
+#[divan::bench(args = TILES, sample_count = 5)]
+fn stage_5_draw(bencher: Bencher<'_, '_>, tiles: u32) {
+    let (canvas, paint) = scene(tiles);
+    let stages = stages(&canvas, &paint);
+    bencher.counter(ItemsCount::new(tiles)).bench(|| drawing(&canvas, &paint, &stages));
+}
+
+#[divan::bench(args = TILES, sample_count = 5)]
+fn stage_6_svg(bencher: Bencher<'_, '_>, tiles: u32) {
+    let (canvas, paint) = scene(tiles);
+    let drawing = drawing(&canvas, &paint, &stages(&canvas, &paint));
+    bencher.counter(ItemsCount::new(tiles)).bench(|| kakeami::back::svg::write(&drawing, None, &mut std::io::sink()));
 }

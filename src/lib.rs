@@ -16,7 +16,7 @@
 //! let drawing = compiled.drawing.expect("the scene is without fault");
 //! let mut svg = Vec::new();
 //! kakeami::back::svg::write(&drawing, None, &mut svg).expect("memory takes all that is written");
-//! assert!(svg.starts_with(b"<?xml"));
+//! assert!(svg.starts_with(b"<svg"));
 //! ```
 //!
 //! The pipeline: [`syntax`] reads a [`syntax::ast::Document`], [`lower`] makes a [`scene::Scene`] of it, the passes in
@@ -150,8 +150,8 @@ fn draw(
         }
     }
     if items.is_empty() {
-        let message = "the scene draws nothing";
-        let hint = "`paint REGION with TONE` does; a library of tones is imported by a scene that paints";
+        let message = "the scene paints nothing";
+        let hint = "a scene has a `paint REGION with TONE` statement; one with tones alone is a library to import";
         let diagnostic = Diagnostic { span: start, ..Diagnostic::without_span(Code::Empty, message) };
         diagnostics.push(diagnostic.hint(hint));
         return None;

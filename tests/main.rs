@@ -7,6 +7,7 @@ mod cases;
 mod cli;
 mod codes;
 mod determinism;
+mod documents;
 mod examples;
 mod later;
 mod support;

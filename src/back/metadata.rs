@@ -3,7 +3,7 @@
 //!
 //! The form in both is JSON: the text of an element of its own name space in the SVG, a compressed `iTXt` chunk in the
 //! PNG. Nothing in it depends on the time or the machine. Pictures come from strangers, so reading one never panics and
-//! never unpacks more than [`LARGEST`] bytes.
+//! never unpacks more than `LARGEST` bytes.
 
 use std::collections::BTreeMap;
 use std::io::Cursor;

@@ -8,7 +8,8 @@ use std::io::{self, Write};
 
 use ::png::text_metadata::ITXtChunk;
 use ::png::{
-    BitDepth, ColorType, Compression, Encoder, EncodingError, Filter, PixelDimensions, SrgbRenderingIntent, Unit,
+    BitDepth, ColorType, Compression, DeflateCompression, Encoder, EncodingError, Filter, PixelDimensions,
+    SrgbRenderingIntent, Unit,
 };
 
 use super::metadata::{KEYWORD, Metadata};
@@ -52,6 +53,9 @@ impl From<EncodingError> for PngError {
     }
 }
 
+/// Pictures of so many pixels are packed tightly; larger ones quickly, or packing would take longer than drawing.
+const SMALL: u64 = 16 << 20;
+
 /// Draws a drawing and writes it. The pixels are held in memory once, and the compressed bytes.
 ///
 /// # Errors
@@ -63,7 +67,13 @@ pub fn write(drawing: &Drawing, metadata: Option<&Metadata>, out: &mut dyn Write
     // Pixels per metre; the format has no other unit.
     let per_metre = (drawing.page.dpi * (1000.0 / Length::MM_PER_INCH)).round() as u32;
     encoder.set_pixel_dims(Some(PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter }));
-    encoder.set_compression(Compression::Fast);
+    if u64::from(width) * u64::from(height) <= SMALL {
+        // Line art is long runs of paper and ink, which filters only break up.
+        encoder.set_filter(Filter::NoFilter);
+        encoder.set_deflate_compression(DeflateCompression::Level(4));
+    } else {
+        encoder.set_compression(Compression::Fast);
+    }
     let pixels = render(drawing);
     let data = match &pixels.format {
         Format::Grey => plain(&mut encoder, ColorType::Grayscale, &pixels),

@@ -2,7 +2,7 @@
 //!
 //! Groups and paints become Inkscape layers, and within them one group holds all marks of one pen. Strokes are strokes
 //! and end where they end: there are no clip paths, masks or white covers. Each tile is one path; from
-//! [`MANY`] paths on [`TOGETHER`] tiles share one, for there are readers that refuse a million elements. Text is made
+//! `MANY` paths on `TOGETHER` tiles share one, for there are readers that refuse a million elements. Text is made
 //! by several threads in pieces that do not depend on their number.
 
 use std::io::{self, Write};

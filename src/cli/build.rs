@@ -164,6 +164,11 @@ fn build(arguments: &BuildArgs, opened: &Opened, outputs: &[(PathBuf, Kind)], se
         check_pixels(&mut compiled, &config.lower.limits);
     }
     let ended = report::diagnostics(&compiled.lowered.diagnostics, &compiled.lowered.sources);
+    let missing = |diagnostic: &Diagnostic| matches!(diagnostic.code, Code::File | Code::Import);
+    if opened.picture.is_some() && compiled.lowered.diagnostics.iter().any(missing) {
+        eprintln!("kake: the picture holds its scene, but not every file that the scene reads");
+        eprintln!("kake: name the folder they lie in by `--root DIR`, or build pictures with `--embed all`");
+    }
     let Some(drawing) = &compiled.drawing else { return ended };
     if ended != Ended::Done {
         return ended;
@@ -227,7 +232,8 @@ fn check_pixels(compiled: &mut Compiled, limits: &Limits) {
     if pixels <= most {
         return;
     }
-    let message = format!("the PNG would have {width} x {height} pixels; the limit is {} megapixels", limits.megapixels);
+    let message =
+        format!("the PNG would have {width} x {height} pixels; the limit is {} megapixels", limits.megapixels);
     let diagnostic = match compiled.lowered.canvas_span {
         Some(span) => Diagnostic::error(Code::Limit, span, message),
         None => Diagnostic::without_span(Code::Limit, message),
@@ -238,12 +244,7 @@ fn check_pixels(compiled: &mut Compiled, limits: &Limits) {
 }
 
 /// Writes one output beside its place; standard output is written at once.
-fn write(
-    drawing: &Drawing,
-    metadata: Option<&Metadata>,
-    kind: Kind,
-    target: &Path,
-) -> io::Result<Option<Pending>> {
+fn write(drawing: &Drawing, metadata: Option<&Metadata>, kind: Kind, target: &Path) -> io::Result<Option<Pending>> {
     let fill = |out: &mut dyn Write| match kind {
         Kind::Svg => svg::write(drawing, metadata, out),
         Kind::Json => json::write(drawing, out),

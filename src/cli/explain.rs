@@ -16,10 +16,8 @@ pub(super) struct ExplainArgs {
 pub(super) fn run(arguments: &ExplainArgs) -> Ended {
     let Some(name) = &arguments.code else {
         let longest = Code::ALL.iter().map(|code| code.to_string().len()).max().unwrap_or(0);
-        let lines: String = Code::ALL
-            .iter()
-            .map(|code| format!("{:longest$}  {}\n", code.to_string(), code.title()))
-            .collect();
+        let lines: String =
+            Code::ALL.iter().map(|code| format!("{:longest$}  {}\n", code.to_string(), code.title())).collect();
         return print(lines.as_bytes());
     };
     match Code::from_name(name) {

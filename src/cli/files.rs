@@ -150,10 +150,7 @@ enum Written {
 }
 
 /// Writes a file beside its place; `write` fills it.
-pub(super) fn write_beside(
-    target: &Path,
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> io::Result<Pending> {
+pub(super) fn write_beside(target: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<Pending> {
     // What a link points to is replaced, not the link.
     let target = target.canonicalize().unwrap_or_else(|_| target.to_owned());
     if fs::metadata(&target).is_ok_and(|kind| !kind.is_file() && !kind.is_dir()) {

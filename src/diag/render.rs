@@ -130,6 +130,15 @@ struct Report {
     excerpt: Option<Excerpt>,
 }
 
+/// Lines between a note and what is at fault below it that are shown without a break.
+const CONTEXT_LINES: usize = 2;
+
+/// Whether a note is shown in the excerpt of what is at fault: an excerpt begins with its first line, so a note further
+/// up would take the lead.
+fn stands_beside(note: usize, main: usize) -> bool {
+    if note < main { main - note <= CONTEXT_LINES } else { note - main <= MOST_LINES }
+}
+
 /// A diagnostic and those of its notes that lie in another file or far from it.
 fn reports(diagnostic: &Diagnostic, texts: &Texts<'_>, window: Window) -> Vec<Report> {
     let place = |span: Span| texts.get(span.source).map(|text| (text, text.clamp(span)));
@@ -140,7 +149,7 @@ fn reports(diagnostic: &Diagnostic, texts: &Texts<'_>, window: Window) -> Vec<Re
         let near = diagnostic.span.is_some_and(|main| main.source == span.source);
         match (place(*span), &main) {
             (Some((text, range)), Some((_, first)))
-                if near && text.line_of(range.start).abs_diff(text.line_of(first.start)) <= MOST_LINES =>
+                if near && stands_beside(text.line_of(range.start), text.line_of(first.start)) =>
             {
                 ranges.push((range, note.as_str()));
             }

@@ -152,10 +152,8 @@ pub struct Rect {
 
 impl Rect {
     /// The box that holds nothing; the neutral element of [`Rect::including`].
-    pub const EMPTY: Self = Self {
-        min: Point::new(f64::INFINITY, f64::INFINITY),
-        max: Point::new(f64::NEG_INFINITY, f64::NEG_INFINITY),
-    };
+    pub const EMPTY: Self =
+        Self { min: Point::new(f64::INFINITY, f64::INFINITY), max: Point::new(f64::NEG_INFINITY, f64::NEG_INFINITY) };
 
     /// From its corners.
     #[must_use]
@@ -215,10 +213,7 @@ impl Rect {
     /// Whether the boxes share a point.
     #[must_use]
     pub fn touches(&self, other: &Self) -> bool {
-        self.min.x <= other.max.x
-            && other.min.x <= self.max.x
-            && self.min.y <= other.max.y
-            && other.min.y <= self.max.y
+        self.min.x <= other.max.x && other.min.x <= self.max.x && self.min.y <= other.max.y && other.min.y <= self.max.y
     }
 
     /// Whether it holds the point; the right and lower sides do not count.

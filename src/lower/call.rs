@@ -6,7 +6,7 @@ use crate::region::Region;
 use crate::span::Span;
 use crate::syntax::ast;
 
-use super::convert::{Slot, coerce};
+use super::convert::{Slot, coerce, spelling};
 use super::cx::Cx;
 use super::value::{FieldUnit, Kind, TypedField, Value};
 use crate::field::Field;
@@ -73,7 +73,7 @@ pub(super) fn assign(
         let span = argument.name.as_ref().map_or(argument.value.span, |name| name.span);
         let place = match &argument.name {
             Some(name) => {
-                let place = names.iter().position(|known| *known == name.name);
+                let place = names.iter().position(|known| spelling(known) == spelling(&name.name));
                 if place.is_none() {
                     let message = format!("{what} has no argument `{}`", name.name);
                     let hint = did_you_mean(&name.name, names.iter().copied()).or_else(|| takes(what, names));
@@ -139,10 +139,9 @@ pub(super) fn call<'a>(
     let what = format!("`{}`", signature.name);
     let names: Vec<&str> = signature.params.iter().map(|param| param.name).collect();
     let places = assign(cx, &what, &names, arguments);
-    let lost = places.contains(&None);
     let mut given: Vec<Option<Given>> = signature.params.iter().map(|_| None).collect();
     let mut whole = true;
-    for (argument, place) in arguments.iter().zip(places) {
+    for (argument, place) in arguments.iter().zip(places.iter().copied()) {
         let slot = place.map_or(Slot::ANY, |place| signature.params[place].slot);
         let value = eval(cx, &argument.value, slot);
         let Some(place) = place else {
@@ -160,18 +159,16 @@ pub(super) fn call<'a>(
         whole &= !value.is_unknown();
         given[place] = Some(Given { value, span: argument.value.span });
     }
+    // An argument that no parameter takes is most likely a required one misspelt.
+    let misnamed = arguments.iter().zip(&places).any(|(argument, place)| argument.name.is_some() && place.is_none());
     for (param, value) in signature.params.iter().zip(&given) {
-        if param.need == Need::Required && value.is_none() {
-            whole = false;
-            // An argument that none of the parameters took may have been meant for this one.
-            if lost {
-                continue;
-            }
+        if param.need == Need::Required && value.is_none() && !misnamed {
             let message = format!("{what} needs `{}`", param.name);
             let hint = takes(&what, &names);
             cx.report(Diagnostic::error(Code::Missing, span, message).maybe_hint(hint));
         }
     }
+    whole &= !misnamed;
     if !whole || cx.is_dead() {
         return Value::Unknown(signature.result);
     }

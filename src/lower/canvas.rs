@@ -87,8 +87,9 @@ pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Option<Canvas> {
         reader.cx.unit = unit;
     }
     let dpi = reader.number(find("dpi"), 1.0, FINEST);
-    // Pixels are known while the size is read only if `dpi` gives them.
-    reader.cx.dpi = dpi;
+    // Pixels are known while the size is read unless they follow from it.
+    let assumed = (find("dpi").is_none() && find("pixels").is_none()).then_some(DEFAULT_DPI);
+    reader.cx.dpi = dpi.or(assumed);
     let size = find("size").and_then(|property| reader.size(property));
     let pixels = find("pixels").and_then(|property| reader.pixels(property));
     let paper = reader.colour(find("paper"), &["none"], Some(Colour::WHITE));

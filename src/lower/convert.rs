@@ -47,6 +47,11 @@ impl Slot {
     }
 }
 
+/// The British spelling of a word that has two.
+pub(super) fn spelling(word: &str) -> &str {
+    if word == "center" { "centre" } else { word }
+}
+
 /// Brings a value into what a slot takes; unknown, with a diagnostic, where that cannot be.
 pub(super) fn coerce(cx: &mut Cx<'_, '_>, value: Value, slot: Slot, span: Span) -> Value {
     let Some(kind) = slot.kind else { return value };
@@ -57,7 +62,7 @@ pub(super) fn coerce(cx: &mut Cx<'_, '_>, value: Value, slot: Slot, span: Span) 
     }
     // A string that names one of the words: `match` and parameters yield strings.
     if let Value::String(text) = &value
-        && let Some(word) = slot.words.iter().find(|word| **word == &*text.value)
+        && let Some(word) = slot.words.iter().find(|word| **word == spelling(&text.value))
     {
         return Value::Word(word);
     }
@@ -74,7 +79,9 @@ pub(super) fn coerce(cx: &mut Cx<'_, '_>, value: Value, slot: Slot, span: Span) 
         }
         return Value::Unknown(Some(kind));
     }
-    match convert(cx.unit, &value, kind) {
+    // A list gives each layer its fill; a ground has but one.
+    let fills = if slot.words.is_empty() { fill_list(&value, kind) } else { None };
+    match fills.or_else(|| convert(cx.unit, &value, kind)) {
         Some(converted) => converted,
         None => {
             let hint = hint(&value, kind, slot);
@@ -90,6 +97,13 @@ fn mismatch(cx: &mut Cx<'_, '_>, found: &str, slot: Slot, span: Span, hint: Opti
     cx.report(diagnostic.label(found.to_owned()).maybe_hint(hint));
 }
 
+/// A list of fills, which stands wherever a fill does.
+fn fill_list(value: &Value, kind: Kind) -> Option<Value> {
+    let Value::List(members) = value else { return None };
+    let fills = kind == Kind::Fill && !members.is_empty();
+    (fills && members.iter().all(|member| matches!(member, Value::Fill(_)))).then(|| value.clone())
+}
+
 /// Whether a value of one kind can stand for another.
 fn may_become(from: Kind, to: Kind) -> bool {
     from == to
@@ -99,7 +113,7 @@ fn may_become(from: Kind, to: Kind) -> bool {
                 | (Kind::Percentage, Kind::Number | Kind::Field)
                 | (Kind::Length | Kind::Angle, Kind::Field)
                 | (Kind::Region, Kind::Box)
-                | (Kind::Fill, Kind::List)
+                | (Kind::List, Kind::Fill)
         )
 }
 
@@ -149,13 +163,15 @@ fn hint(value: &Value, kind: Kind, slot: Slot) -> Option<String> {
         (Value::Field(_), Kind::Number | Kind::Length | Kind::Angle) => {
             "this takes one value for the whole page, not a field".to_owned()
         }
-        (Value::Number(_) | Value::Angle(_), Kind::Angles) => "an angle for every tile: `fixed(45deg)`".to_owned(),
+        (Value::Number(_), Kind::Angles) => "an angle for every tile: `fixed(45deg)`".to_owned(),
         (Value::Number(_) | Value::Length(_), Kind::Point) => "a point is written `(10mm, 20mm)`".to_owned(),
         (Value::Tuple(members), Kind::Box) if members.len() == 2 => {
             "a box is written `(x, y, width, height)`".to_owned()
         }
         (Value::Tuple(_), Kind::Box | Kind::Point) => "its members are lengths".to_owned(),
         (Value::Word(word), _) => format!("`{word}` belongs elsewhere"),
+        (Value::Angle(_), Kind::Angles) => format!("`fixed({})` turns every tile so", value.text()),
+        (Value::Field(_), Kind::Angles) => "`along(field)` turns tiles along a field of angles".to_owned(),
         (Value::Tone(_), _) => "tones stand behind `with`".to_owned(),
         _ => return None,
     })

@@ -8,7 +8,7 @@ use crate::scene::Colour;
 use crate::span::Span;
 use crate::syntax::ast::{self, Argument, Expr, ExprKind, Pattern, StringPart, Unit};
 
-use super::convert::{Slot, coerce};
+use super::convert::{self, Slot, coerce};
 use super::cx::{Cx, grouped};
 use super::modules::Function;
 use super::scope::{Binding, Declared, Scope};
@@ -150,7 +150,7 @@ fn name<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span: Span, 
     if let Some(value) = lookup(cx, scope, name, span) {
         return value;
     }
-    if let Some(word) = slot.words.iter().find(|word| **word == name) {
+    if let Some(word) = slot.words.iter().find(|word| **word == convert::spelling(name)) {
         return Value::Word(word);
     }
     if slot.kind == Some(Kind::Tone)
@@ -165,10 +165,11 @@ fn name<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span: Span, 
         cx.report(call::not_yet(name, span));
         return Value::UNKNOWN;
     }
-    if cx.modules[scope.module].is_incomplete {
+    let hint = name_hint(cx, scope, name, slot);
+    // What an import would have brought that could not be read is not missed again.
+    if hint.is_none() && cx.modules[scope.module].is_incomplete {
         return Value::UNKNOWN;
     }
-    let hint = name_hint(cx, scope, name, slot);
     cx.report(Diagnostic::error(Code::UnknownName, span, format!("`{name}` is not known here")).maybe_hint(hint));
     Value::UNKNOWN
 }
@@ -183,6 +184,9 @@ fn name_hint<'a>(cx: &Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, slot: Slot)
     let module = &cx.modules[scope.module];
     if module.aliases.contains_key(name) {
         return Some(format!("`{name}` is a module: `{name}.something`"));
+    }
+    if slot.kind == Some(Kind::String) {
+        return Some(format!("a string is written in quotes: `\"{name}\"`"));
     }
     let mut known: Vec<&str> = slot.words.to_vec();
     known.extend(visible(cx, scope));
@@ -345,7 +349,7 @@ fn call<'a>(
     match &callee.kind {
         ExprKind::Name(name) => {
             if let Some(function) = find_function(cx, scope.module, name) {
-                return call_function(cx, scope, function, arguments, span);
+                return call_function(cx, scope, function, (arguments, span), slot);
             }
             if slot.kind == Some(Kind::Tone)
                 && let Some(tone) = tone::find(cx, scope.module, name)
@@ -359,7 +363,7 @@ fn call<'a>(
                     eval(cx, scope, expr, if slot.kind.is_none() { around } else { slot })
                 });
             }
-            unknown_call(cx, scope, name, callee.span);
+            unknown_call(cx, scope, name, callee.span, slot);
         }
         ExprKind::Member(base, member) => {
             let Some(module) = module_of(cx, scope, base) else {
@@ -368,7 +372,7 @@ fn call<'a>(
             };
             let modules = cx.modules;
             if let Some(&function) = modules[module].functions.get(member.name.as_str()) {
-                return call_function(cx, scope, function, arguments, span);
+                return call_function(cx, scope, function, (arguments, span), slot);
             }
             if let Some(&tone) = modules[module].tones.get(member.name.as_str()) {
                 return tone::instantiate(cx, scope, tone, arguments, span);
@@ -398,7 +402,7 @@ fn check_arguments<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, arguments: &'
     }
 }
 
-fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span: Span) {
+fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span: Span, slot: Slot) {
     if vocabulary::is_later(name) {
         cx.report(call::not_yet(name, span));
         return;
@@ -410,18 +414,26 @@ fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span
     }
     let modules = cx.modules;
     let module = &modules[scope.module];
-    if module.is_incomplete {
-        return;
-    }
     let mut known: Vec<&str> = module.functions.keys().copied().collect();
     known.extend(module.opened.iter().flat_map(|&opened| modules[opened].functions.keys().copied()));
-    for callable in vocabulary::callables() {
-        known.push(callable);
+    // What fits the place comes first: a misspelt shape is no square root.
+    let fitting = vocabulary::fitting(slot);
+    match fitting.is_empty() {
+        true => vocabulary::callables().for_each(|callable| known.push(callable)),
+        false => fitting.iter().for_each(|callable| known.push(callable)),
     }
     let hint = match tone::find(cx, scope.module, name) {
         Some(_) => Some(format!("`{name}` is a tone: `paint REGION with {name}(…)`")),
-        None => did_you_mean(name, known),
+        None => did_you_mean(name, known).or_else(|| {
+            let names: Vec<_> = fitting.iter().map(|name| format!("`{name}`")).collect();
+            slot.kind
+                .filter(|_| !names.is_empty())
+                .map(|kind| format!("{} is one of {}", kind.noun(), names.join(", ")))
+        }),
     };
+    if hint.is_none() && module.is_incomplete {
+        return;
+    }
     let message = format!("there is nothing called `{name}`");
     cx.report(Diagnostic::error(Code::UnknownFunction, span, message).maybe_hint(hint));
 }
@@ -436,11 +448,12 @@ fn call_function<'a>(
     cx: &mut Cx<'a, '_>,
     scope: &Rc<Scope<'a>>,
     function: Function<'a>,
-    arguments: &'a [Argument],
-    span: Span,
+    (arguments, span): (&'a [Argument], Span),
+    slot: Slot,
 ) -> Value {
     let what = format!("`{}`", function.name.name);
-    let inner = bind_arguments(cx, scope, &what, (function.module, function.params), arguments, span);
+    let inner =
+        bind_arguments(cx, (scope, operand_slot(slot)), &what, (function.module, function.params), arguments, span);
     let Some(inner) = inner else { return Value::UNKNOWN };
     if cx.is_dead() || cx.is_runaway(function.name.span) || !cx.count_iteration(span) {
         return Value::UNKNOWN;
@@ -476,11 +489,11 @@ fn declare_param<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, param: &'a ast:
     }
 }
 
-/// A scope with the parameters of a function or tone bound to arguments that are evaluated in the caller's scope.
-/// `None` where one is missing, which was reported.
+/// A scope with the parameters of a function or tone bound to arguments that are evaluated in the caller's scope; where
+/// a parameter takes anything, the names of the caller's place are known, as in `f(x)` in a field. `None` where one is missing, which was reported.
 pub(super) fn bind_arguments<'a>(
     cx: &mut Cx<'a, '_>,
-    caller: &Rc<Scope<'a>>,
+    (caller, around): (&Rc<Scope<'a>>, Slot),
     what: &str,
     (module, params): (usize, &'a [ast::Parameter]),
     arguments: &'a [Argument],
@@ -490,6 +503,8 @@ pub(super) fn bind_arguments<'a>(
     let places = call::assign(cx, what, &names, arguments);
     let scope = Scope::inside(&cx.modules[module].scope);
     let mut whole = true;
+    // An argument that no parameter takes is most likely a required one misspelt.
+    let misnamed = arguments.iter().zip(&places).any(|(argument, place)| argument.name.is_some() && place.is_none());
     for argument in arguments.iter().zip(&places).filter(|(_, place)| place.is_none()).map(|(argument, _)| argument) {
         eval(cx, caller, &argument.value, Slot::of(Kind::Field));
     }
@@ -502,12 +517,14 @@ pub(super) fn bind_arguments<'a>(
                     (None, Some(default)) => eval(cx, &scope, default, Slot::ANY).kind(),
                     (pinned, _) => pinned,
                 };
-                expect(cx, caller, given, kind.map_or(Slot::ANY, Slot::of))
+                match kind {
+                    Some(kind) => expect(cx, caller, given, Slot::of(kind)),
+                    None => eval(cx, caller, given, around),
+                }
             }
             (None, Some(default)) => expect(cx, &scope, default, pinned.map_or(Slot::ANY, Slot::of)),
             (None, None) => {
-                // An argument that none of the parameters took may have been meant for this one.
-                if !places.contains(&None) {
+                if !misnamed {
                     let message = format!("{what} needs `{}`", param.name.name);
                     let diagnostic = Diagnostic::error(Code::Missing, span, message);
                     cx.report(diagnostic.note(param.name.span, "declared here"));
@@ -716,8 +733,8 @@ fn matching<'a>(
     span: Span,
 ) -> Value {
     let value = eval(cx, scope, subject, Slot::ANY);
-    let covered = check_patterns(cx, scope, (subject, &value), arms, span);
-    if value.is_unknown() {
+    let sound = check_patterns(cx, scope, (subject, &value), arms, span);
+    if !sound || value.is_unknown() {
         let values: Vec<Value> = arms.iter().map(|arm| cx.dead(|cx| eval(cx, scope, &arm.value, slot))).collect();
         return common(values);
     }
@@ -729,7 +746,6 @@ fn matching<'a>(
     }
     match taken {
         Some(taken) => eval(cx, scope, &arms[taken].value, slot),
-        None if !covered => Value::UNKNOWN,
         None => {
             let message = format!("no arm covers {}", value.text());
             let diagnostic = Diagnostic::error(Code::Match, subject.span, message);
@@ -750,7 +766,7 @@ fn holds(pattern: &Pattern, value: &Value) -> bool {
     }
 }
 
-/// Patterns that can never match, match twice, or leave something uncovered whatever the value is; whether they cover all.
+/// Reports patterns that can never match, match twice, or leave something uncovered; whether all is well.
 fn check_patterns(
     cx: &mut Cx<'_, '_>,
     scope: &Rc<Scope<'_>>,
@@ -758,6 +774,7 @@ fn check_patterns(
     arms: &[ast::Arm],
     span: Span,
 ) -> bool {
+    let mut sound = true;
     for (i, arm) in arms.iter().enumerate() {
         let expected = match arm.pattern {
             Pattern::Any => None,
@@ -771,6 +788,7 @@ fn check_patterns(
         {
             let message = format!("this matches {}, but the value is {}", expected.noun(), value.describe());
             cx.report(Diagnostic::error(Code::Type, arm.span, message));
+            sound = false;
         }
         if let Some(earlier) =
             arms[..i].iter().find(|earlier| earlier.pattern == arm.pattern || earlier.pattern == Pattern::Any)
@@ -779,8 +797,8 @@ fn check_patterns(
             cx.report(Diagnostic::error(Code::Match, arm.span, message).note(earlier.span, "this one"));
         }
     }
-    if arms.iter().any(|arm| arm.pattern == Pattern::Any) {
-        return true;
+    if !sound || arms.iter().any(|arm| arm.pattern == Pattern::Any) {
+        return sound;
     }
     let choices = match (&subject.kind, value.kind()) {
         (_, Some(Kind::Bool)) => vec![Value::Bool(true), Value::Bool(false)],
@@ -789,13 +807,13 @@ fn check_patterns(
     };
     let missed: Vec<String> =
         choices.iter().filter(|choice| !arms.iter().any(|arm| holds(&arm.pattern, choice))).map(Value::text).collect();
-    if !choices.is_empty() && missed.is_empty() {
-        return true;
+    if choices.is_empty() || !missed.is_empty() {
+        let message = match missed.is_empty() {
+            true => "the match does not cover every value".to_owned(),
+            false => format!("the match does not cover {}", missed.join(", ")),
+        };
+        cx.report(Diagnostic::error(Code::Match, span, message).hint("a last arm `_ => …` covers the rest"));
+        return false;
     }
-    let message = match missed.is_empty() {
-        true => "the match does not cover every value".to_owned(),
-        false => format!("the match does not cover {}", missed.join(", ")),
-    };
-    cx.report(Diagnostic::error(Code::Match, span, message).hint("a last arm `_ => …` covers the rest"));
-    false
+    true
 }

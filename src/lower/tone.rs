@@ -78,36 +78,39 @@ pub(super) fn instantiate<'a>(
     span: Span,
 ) -> Value {
     let what = format!("`{}`", tone.name.name);
-    let scope = eval::bind_arguments(cx, caller, &what, (tone.module, tone.params), arguments, span);
+    let scope = eval::bind_arguments(cx, (caller, Slot::ANY), &what, (tone.module, tone.params), arguments, span);
     let Some(scope) = scope else { return Value::Unknown(Some(Kind::Tone)) };
     if !cx.count_iteration(span) {
         return Value::Unknown(Some(Kind::Tone));
     }
-    let name = tone.name.span;
-    if cx.is_runaway(name) {
-        return Value::Unknown(Some(Kind::Tone));
-    }
-    // Without parameters nothing can end the round.
-    if tone.params.is_empty() && cx.is_under_way(name) {
-        let message = format!("the tone {what} is derived from itself");
-        cx.report(Diagnostic::error(Code::Cycle, span, message).note(name, "declared here"));
-        cx.give_up();
-        return Value::Unknown(Some(Kind::Tone));
-    }
-    let value = cx.called(name, span, |cx| properties(cx, &scope, tone)).flatten();
+    let value = enter(cx, tone, span, &scope);
     value.map_or(Value::Unknown(Some(Kind::Tone)), |tone| Value::Tone(Rc::new(tone)))
 }
 
 /// Evaluates a tone that nothing may paint with, with unknown arguments.
 pub(super) fn check<'a>(cx: &mut Cx<'a, '_>, tone: Tone<'a>) {
     let scope = eval::unknown_arguments(cx, tone.module, tone.params);
-    let name = tone.name.span;
-    let checked = cx.called(name, name, |cx| properties(cx, &scope, tone));
-    if let (Some(Some(tone)), ToneBody::Properties(_)) = (checked, tone.body)
+    let checked = enter(cx, tone, tone.name.span, &scope);
+    if let (Some(tone), ToneBody::Properties(_)) = (checked, tone.body)
         && !tone.broken
     {
         tone.check_pairs(cx);
     }
+}
+
+/// Evaluates a tone's properties, unless they are being evaluated already: a tone that derives from itself has none.
+fn enter<'a>(cx: &mut Cx<'a, '_>, tone: Tone<'a>, span: Span, scope: &Rc<Scope<'a>>) -> Option<ToneValue> {
+    let key = tone.name.span;
+    if cx.is_runaway(key) {
+        return None;
+    }
+    if cx.is_under_way(key) {
+        let message = format!("the tone `{}` derives from itself", tone.name.name);
+        cx.report(Diagnostic::error(Code::Cycle, key, message).label("this leads back to it"));
+        cx.give_up();
+        return None;
+    }
+    cx.called(key, span, |cx| properties(cx, scope, tone)).flatten()
 }
 
 fn properties<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, tone: Tone<'a>) -> Option<ToneValue> {
@@ -171,7 +174,7 @@ pub(super) fn expect_tone<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, expr: 
             let alias = module.aliases.iter().find(|(_, index)| modules[**index].tones.contains_key(name.as_str()));
             alias.map(|(alias, _)| format!("`{alias}.{name}` is a tone"))
         });
-        if !module.is_incomplete {
+        if hint.is_some() || !module.is_incomplete {
             let message = format!("there is no tone `{name}`");
             cx.report(Diagnostic::error(Code::UnknownTone, span, message).maybe_hint(hint));
         }
@@ -211,8 +214,14 @@ fn fills(cx: &mut Cx<'_, '_>, members: &Rc<[Value]>, expr: &Expr) -> Value {
         return Value::Unknown(Some(Kind::Fill));
     }
     let spans = eval::member_spans(expr, members.len());
-    let fill = |(member, span): (&Value, Span)| coerce(cx, member.clone(), Slot::of(Kind::Fill), span);
-    Value::List(members.iter().zip(spans).map(fill).collect())
+    let mut fills = Vec::with_capacity(members.len());
+    for (member, span) in members.iter().zip(spans) {
+        match coerce(cx, member.clone(), Slot::of(Kind::Fill), span) {
+            Value::List(inner) => fills.extend(inner.iter().cloned()),
+            fill => fills.push(fill),
+        }
+    }
+    Value::List(fills.into())
 }
 
 impl ToneValue {

@@ -151,16 +151,19 @@ fn undocumented(expr: BoxedStrategy<Expr>) -> BoxedStrategy<Expr> {
 /// Operators around primaries, each kind only where it needs no brackets.
 fn whole(primary: BoxedStrategy<Expr>) -> BoxedStrategy<Expr> {
     let power = chain(primary, &[BinaryOp::Power], 2);
-    let prefix = select(vec![UnaryOp::Minus, UnaryOp::Not]);
-    let unary = prop_oneof![
-        4 => power.clone(),
-        1 => (vec(prefix, 1..3), power)
-            .prop_map(|(operators, operand)| make(ExprKind::Unary(operators, Box::new(operand)))),
-    ]
-    .boxed();
+    let prefixed = |operator: UnaryOp, operand: BoxedStrategy<Expr>| {
+        prop_oneof![
+            4 => operand.clone(),
+            1 => (1..3usize, operand)
+                .prop_map(move |(count, operand)| make(ExprKind::Unary(vec![operator; count], Box::new(operand)))),
+        ]
+        .boxed()
+    };
+    let unary = prefixed(UnaryOp::Minus, power);
     let products = [BinaryOp::Multiply, BinaryOp::Divide, BinaryOp::Remainder, BinaryOp::Intersect];
     let sum = chain(chain(unary, &products, 2), &[BinaryOp::Add, BinaryOp::Subtract], 3);
     let comparison = chain(sum, &[BinaryOp::Equal, BinaryOp::Less, BinaryOp::GreaterEqual], 1);
+    let comparison = prefixed(UnaryOp::Not, comparison);
     let or = chain(chain(comparison, &[BinaryOp::And], 2), &[BinaryOp::Or], 2);
     let branches = vec((or.clone(), or.clone()), 1..3);
     prop_oneof![

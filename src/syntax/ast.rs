@@ -396,7 +396,7 @@ impl BinaryOp {
     }
 
     /// How strongly it binds; a greater number binds tighter. Comparisons do not chain. A range `a .. b` binds at 0
-    /// and a prefix operator between `*` and `^`.
+    /// and the prefix `-` between `*` and `^`; `not` takes the comparison behind it.
     #[must_use]
     pub fn precedence(self) -> u8 {
         match self {

@@ -4,9 +4,9 @@
 //! that could not. What holds: no text is met by a panic or an exhausted stack, the work is linear in the text's
 //! length, and the tree is no deeper than its brackets and [`NESTING`] allow.
 //!
-//! [`scan`] finds words and signs, [`structure`] matches brackets, measures nesting and finds where statements and
-//! properties begin, [`read`] runs the grammar (`grammar/kake.pest`) over one of those at a time, [`build`] and
-//! [`expression`] make the tree from what it found, and [`expected`] says in words what it did not find.
+//! `scan` finds words and signs, `structure` matches brackets, measures nesting and finds where statements and
+//! properties begin, `read` runs the grammar (`grammar/kake.pest`) over one of those at a time, `build` and
+//! `expression` make the tree from what it found, and `expected` says in words what it did not find.
 
 mod build;
 mod expected;

@@ -77,6 +77,12 @@ pub(super) fn callables() -> impl Iterator<Item = &'static str> {
     TABLES.into_iter().flat_map(|(_, table)| table.iter().map(|signature| signature.name))
 }
 
+/// The names that can be called where values of one kind of the scene's own are asked for.
+pub(super) fn fitting(slot: Slot) -> Vec<&'static str> {
+    let tables = TABLES.iter().filter(|(kind, _)| kind.is_some() && *kind == slot.kind);
+    tables.flat_map(|(_, table)| table.iter().map(|signature| signature.name)).collect()
+}
+
 /// The names that a place knows besides its own words.
 pub(super) fn names(slot: Slot) -> Vec<&'static str> {
     let mut names = vec!["pi", "tau", "canvas"];

@@ -148,7 +148,8 @@ fn clamped(paint: &Paint, field: &[f64], standing: &[Standing]) -> Option<Diagno
             format!("`k` leaves the range from 0 to 4 on {tiles} of `{}`", paint.name),
         )
         .label(format!("reaches {}", (extreme * 1e3).round() / 1e3))
-        .hint("the values were clamped; `clamp(…, 0, 4)` says so in the scene"),
+        .hint("the values were clamped; `clamp(…, 0, 4)` says so in the scene")
+        .note(paint.span, "painted here"),
     )
 }
 

@@ -2,7 +2,7 @@
 //!
 //! In: a paint and the canvas. Out: [`Sites`] over the paint's domain and its bleed. How many tiles there will be is
 //! estimated before anything is allocated, so that a slip in a radius ends in a diagnostic and not in all the memory.
-//! A placement is one file here and one line in [`find`].
+//! A placement is one file here and one line in `find`.
 
 mod budget;
 mod grid;

@@ -87,6 +87,18 @@ impl Row {
     fn next_operator(&mut self, precedence: u8) -> Option<(Infix, Span)> {
         self.operators.next_if(|(operator, _)| operator.precedence() == precedence)
     }
+
+    /// Takes the `not`s before the next operand, with where they begin: they are about the comparison behind them.
+    fn next_negations(&mut self) -> Option<(Vec<UnaryOp>, Span)> {
+        let operand = self.operands.as_mut_slice().first_mut()?;
+        let count = operand.prefixes.iter().take_while(|prefix| **prefix == UnaryOp::Not).count();
+        let place = operand.span;
+        let negations: Vec<UnaryOp> = operand.prefixes.drain(..count).collect();
+        if operand.prefixes.is_empty() && count > 0 {
+            operand.span = operand.node.expr.span;
+        }
+        (count > 0).then_some((negations, place))
+    }
 }
 
 impl Reader<'_> {
@@ -167,6 +179,13 @@ impl Reader<'_> {
     fn binary(&mut self, row: &mut Row, precedence: u8) -> Option<Node> {
         if precedence == PREFIX {
             return self.powers(row);
+        }
+        if precedence == BinaryOp::Equal.precedence()
+            && let Some((negations, place)) = row.next_negations()
+        {
+            let inner = self.binary(row, precedence)?;
+            let span = place.to(inner.expr.span);
+            return Some(self.over(ExprKind::Unary(negations, Box::new(inner.expr)), span, inner.height));
         }
         let first = self.binary(row, precedence + 1)?;
         let (mut span, mut below) = (first.expr.span, first.height);

@@ -3,6 +3,8 @@
 //! A number, boolean, list or record is written as TOML's own where that reads back as the same; all else is a string
 //! that holds the expression.
 
+use std::collections::BTreeSet;
+
 use crate::syntax::ast::{Binding, Doc, Expr, ExprKind, Parameter, Property, StringPart, UnaryOp};
 use crate::syntax::format::{documented_expression, expression, parameters};
 
@@ -112,11 +114,13 @@ fn is_native(expr: &Expr) -> bool {
 /// Whether a record can be a table: no two names are the same, and it is not one that means something else.
 fn is_table(properties: &[Property]) -> bool {
     let is_called = |name: &str| properties.iter().any(|property| property.name.name == name);
-    let is_distinct = properties
-        .iter()
-        .enumerate()
-        .all(|(i, property)| properties[..i].iter().all(|earlier| earlier.name.name != property.name.name));
-    is_distinct && !(properties.len() == 2 && is_called("value") && is_called("doc"))
+    are_distinct(properties) && !(properties.len() == 2 && is_called("value") && is_called("doc"))
+}
+
+/// Whether no two properties are called the same.
+pub(super) fn are_distinct(properties: &[Property]) -> bool {
+    let mut names = BTreeSet::new();
+    properties.iter().all(|property| names.insert(property.name.name.as_str()))
 }
 
 /// Whether a number of the language is one of TOML, with the same text.

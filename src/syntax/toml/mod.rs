@@ -1,7 +1,7 @@
-//! Scenes in TOML: [`read`] makes a document of them, [`write`] makes them of a document.
+//! Scenes in TOML: [`read`] makes a document of them, [`write()`] makes them of a document.
 //!
 //! In: the text of a `.toml` scene. Out: the same [`Document`](super::ast::Document) that the `.kake` front end makes,
-//! every span pointing into the TOML, and diagnostics. [`write`] goes the other way and loses nothing but comments and
+//! every span pointing into the TOML, and diagnostics. [`write()`] goes the other way and loses nothing but comments and
 //! the order among declarations of different kinds: `read(write(d))` says what `d` says.
 //!
 //! # The form

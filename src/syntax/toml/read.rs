@@ -1,5 +1,7 @@
 //! From TOML to a document: the file and its declarations.
 
+use std::borrow::Cow;
+
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
@@ -12,13 +14,10 @@ use crate::syntax::ast::{Binding, Doc, Document, Expr, ExprKind, Ident, Property
 /// Reads a scene in TOML. The document holds whatever could be read; the diagnostics say what could not.
 #[must_use]
 pub fn read(source: SourceId, text: &str) -> (Document, Vec<Diagnostic>) {
-    let mut reader = Reader { source, text, diagnostics: Vec::new(), depth: 0, is_sound: true };
+    let mut reader = Reader { source, text, diagnostics: Vec::new(), depth: 0, is_sound: true, unclosed: Vec::new() };
     let mut statements = Vec::new();
-    if let Some(range) = guard::too_deep(text) {
-        let span = Span::new(source, range.start, range.end);
-        reader.too_deep(span);
-    } else {
-        let (table, errors) = DeTable::parse_recoverable(text);
+    if let Some(text) = reader.closed_text() {
+        let (table, errors) = DeTable::parse_recoverable(&text);
         for error in errors {
             reader.syntax_error(&error);
         }
@@ -31,6 +30,9 @@ pub fn read(source: SourceId, text: &str) -> (Document, Vec<Diagnostic>) {
 /// The keys of the file in the order in which their statements stand in the document: what draws comes late.
 pub(super) const SECTIONS: [&str; 12] =
     ["edition", "import", "canvas", "seed", "param", "let", "field", "region", "fn", "tone", "draw", "experiment"];
+
+/// After so many values that are not closed, the rest of the text is read as it is.
+const MOST_UNCLOSED: usize = 16;
 
 /// A key with its place.
 #[derive(Debug, Clone)]
@@ -53,6 +55,8 @@ pub(super) struct Reader<'a> {
     pub(super) depth: usize,
     /// Whether the text is TOML; if not, what is missing may only be unreadable.
     is_sound: bool,
+    /// Where values begin that were taken out because they are not closed.
+    unclosed: Vec<usize>,
 }
 
 impl<'a> Reader<'a> {
@@ -82,6 +86,17 @@ impl<'a> Reader<'a> {
         (raw, Places::new(raw, range.start))
     }
 
+    /// Whether a value could not be read, which has been reported: the TOML parser makes one up, or takes what has no
+    /// quotes for a string.
+    pub(super) fn is_lost(&self, value: Value<'_>) -> bool {
+        let range = value.span();
+        match value.get_ref() {
+            DeValue::Integer(_) => range.is_empty() || self.unclosed.contains(&range.start),
+            DeValue::String(_) => !self.text.get(range).is_some_and(|raw| raw.starts_with(['"', '\''])),
+            _ => false,
+        }
+    }
+
     pub(super) fn report(&mut self, diagnostic: Diagnostic) {
         self.diagnostics.push(diagnostic);
     }
@@ -91,14 +106,42 @@ impl<'a> Reader<'a> {
         self.report(Diagnostic::error(Code::Nesting, span, message).hint("give the inner parts names with `let`"));
     }
 
+    /// The text without the values that are not closed; none if it is nested too deeply.
+    fn closed_text(&mut self) -> Option<Cow<'a, str>> {
+        let mut text = Cow::Borrowed(self.text);
+        loop {
+            let nesting = guard::measure(&text);
+            if let Some(range) = nesting.too_deep {
+                self.too_deep(self.span(range));
+                return None;
+            }
+            match nesting.unclosed {
+                Some(open) if self.unclosed.len() < MOST_UNCLOSED => {
+                    self.is_sound = false;
+                    self.unclosed.push(open);
+                    let bracket = text.get(open..open + 1).unwrap_or("");
+                    let message = format!("`{bracket}` is not closed");
+                    self.report(Diagnostic::error(Code::Syntax, self.span(open..open + 1), message));
+                    text = Cow::Owned(guard::without_unclosed(&text, open));
+                }
+                _ => return Some(text),
+            }
+        }
+    }
+
     fn syntax_error(&mut self, error: &toml::de::Error) {
         self.is_sound = false;
         let span = self.span(error.span().unwrap_or(0..0));
         let message = error.message();
+        let under = self.text.get(span.start as usize..span.end as usize).unwrap_or("").trim();
         self.report(match message {
-            "duplicate key" => {
-                let name = self.text.get(span.start as usize..span.end as usize).unwrap_or("").trim();
-                Diagnostic::error(Code::Duplicate, span, format!("`{name}` is given twice"))
+            "duplicate key" => Diagnostic::error(Code::Duplicate, span, format!("`{under}` is given twice")),
+            _ if message.starts_with("string values must be quoted") && under.is_empty() => {
+                Diagnostic::error(Code::Syntax, span, "expected a value")
+            }
+            _ if message.starts_with("string values must be quoted") => {
+                Diagnostic::error(Code::Syntax, span, format!("`{under}` is no value of TOML"))
+                    .hint("expressions of the language stand in quotes")
             }
             _ => Diagnostic::error(Code::Syntax, span, message),
         });
@@ -133,7 +176,7 @@ impl<'a> Reader<'a> {
     /// A table, if the value is one.
     pub(super) fn table<'t>(&mut self, key: &Key, value: Value<'t>, example: &str) -> Option<&'t DeTable<'t>> {
         let table = value.get_ref().as_table();
-        if table.is_none() && !is_lost(value) {
+        if table.is_none() && !self.is_lost(value) {
             let message = format!("`{}` is a table, not {}", key.name, kind(value.get_ref()));
             self.wrong_form(key.span, message, format!("write `{example}`"));
         }
@@ -143,7 +186,7 @@ impl<'a> Reader<'a> {
     /// The tables of an array of tables, with their places.
     pub(super) fn tables<'t>(&mut self, key: &Key, value: Value<'t>, example: &str) -> Vec<(Span, &'t DeTable<'t>)> {
         let Some(array) = value.get_ref().as_array() else {
-            if !is_lost(value) {
+            if !self.is_lost(value) {
                 let message = format!("`{}` is an array of tables, not {}", key.name, kind(value.get_ref()));
                 self.wrong_form(key.span, message, format!("write `{example}`"));
             }
@@ -158,7 +201,7 @@ impl<'a> Reader<'a> {
             let span = self.span(member.span());
             match member.get_ref().as_table() {
                 Some(table) => tables.push((span, table)),
-                None if is_lost(member) => {}
+                None if self.is_lost(member) => {}
                 None => {
                     let message = format!("`{}` holds tables, not {}", key.name, kind(member.get_ref()));
                     self.wrong_form(span, message, "every entry is a table with the keys of a statement".into());
@@ -287,7 +330,7 @@ impl<'a> Reader<'a> {
         let section = &key.name;
         for (key, value) in self.entries(table) {
             let Some(table) = value.get_ref().as_table() else {
-                if !is_lost(value) {
+                if !self.is_lost(value) {
                     let message = format!("{what} is a table, not {}", kind(value.get_ref()));
                     self.wrong_form(key.span, message, format!("write `[{section}.{}]`", key.name));
                 }
@@ -382,7 +425,7 @@ impl<'a> Reader<'a> {
 
     /// From a key to the end of its value, if the value stands behind it; of a table with a heading, the heading.
     pub(super) fn covering(&self, key: &Key, value: Value<'_>) -> Span {
-        if is_lost(value) { key.span } else { key.span.to(self.span(value.span())) }
+        if self.is_lost(value) { key.span } else { key.span.to(self.span(value.span())) }
     }
 }
 
@@ -401,11 +444,6 @@ pub(super) fn is_documented(table: &DeTable<'_>, allowed: &[&str]) -> bool {
 /// What stands for a value that is not there.
 pub(super) fn lost(span: Span) -> Expr {
     Expr { kind: ExprKind::Error, span }
-}
-
-/// Whether a value was made up by the TOML parser in place of one that it could not read.
-pub(super) fn is_lost(value: Value<'_>) -> bool {
-    value.span().is_empty() && value.get_ref().is_integer()
 }
 
 /// What a value is, in TOML's words.

@@ -2,7 +2,7 @@
 
 use unicode_normalization::UnicodeNormalization;
 
-use super::read::{Key, Reader, Value, is_lost};
+use super::read::{Key, Reader, Value};
 use crate::diag::{Code, Diagnostic};
 use crate::span::Span;
 use crate::syntax::ast::{Doc, Expr, ExprKind, Ident, StringPart, Text};
@@ -98,10 +98,11 @@ impl Reader<'_> {
 
     /// The value of a string. The line end before the closing quotes of a multi-line one does not count.
     fn string(&mut self, key: &Key, value: Value<'_>) -> Option<String> {
+        if self.is_lost(value) {
+            return None;
+        }
         let Some(text) = value.get_ref().as_str() else {
-            if !is_lost(value) {
-                self.wrong_type(self.span(value.span()), &key.name, "a string of plain text", value.get_ref());
-            }
+            self.wrong_type(self.span(value.span()), &key.name, "a string of plain text", value.get_ref());
             return None;
         };
         let (raw, _) = self.places(value);

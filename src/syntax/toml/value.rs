@@ -4,7 +4,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::guard::NESTING;
-use super::read::{Key, Reader, Value, is_documented, is_lost, lost};
+use super::read::{Key, Reader, Value, is_documented, lost};
 use crate::diag::{Code, Diagnostic};
 use crate::span::Span;
 use crate::syntax::ast::{Expr, ExprKind, Parameter, Property, UnaryOp};
@@ -14,7 +14,7 @@ impl Reader<'_> {
     /// A value as an expression: strings are read as the language, all others stand for themselves.
     pub(super) fn value(&mut self, value: Value<'_>) -> Expr {
         let span = self.span(value.span());
-        if is_lost(value) {
+        if self.is_lost(value) {
             return lost(span);
         }
         let kind = match value.get_ref() {
@@ -88,6 +88,7 @@ impl Reader<'_> {
     /// Parameters in one of their three forms.
     pub(super) fn parameters(&mut self, key: &Key, value: Value<'_>) -> Vec<Parameter> {
         match value.get_ref() {
+            _ if self.is_lost(value) => Vec::new(),
             DeValue::String(text) => self.parameter_list(text, value),
             DeValue::Array(array) => {
                 let mut parameters = Vec::new();
@@ -100,9 +101,7 @@ impl Reader<'_> {
                 self.entries(table).into_iter().filter_map(|(key, value)| self.parameter_entry(&key, value)).collect()
             }
             other => {
-                if !is_lost(value) {
-                    self.wrong_type(self.span(value.span()), &key.name, "a list of parameters", other);
-                }
+                self.wrong_type(self.span(value.span()), &key.name, "a list of parameters", other);
                 Vec::new()
             }
         }
@@ -119,6 +118,7 @@ impl Reader<'_> {
     fn parameter_member(&mut self, key: &Key, member: &Spanned<DeValue<'_>>, out: &mut Vec<Parameter>) {
         let span = self.span(member.span());
         match member.get_ref() {
+            _ if self.is_lost(member) => {}
             DeValue::String(text) => out.extend(self.parameter_list(text, member)),
             DeValue::Table(table) => {
                 let mut name = None;
@@ -137,7 +137,6 @@ impl Reader<'_> {
                     None => self.missing(span, "a parameter needs a `name`".into()),
                 }
             }
-            _ if is_lost(member) => {}
             other => self.wrong_type(span, &key.name, "an array of strings and tables", other),
         }
     }

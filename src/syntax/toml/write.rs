@@ -2,7 +2,9 @@
 
 use std::fmt::Write;
 
-use super::encode::{bindable, key, name, paint_name, params, plain, property, property_value, string, value};
+use super::encode::{
+    are_distinct, bindable, key, name, paint_name, params, plain, property, property_value, string, value,
+};
 use super::read::SECTIONS;
 use crate::syntax::ast::{Binding, Doc, Document, Expr, Property, Statement, StatementKind, ToneBody};
 use crate::syntax::format::documented_record;
@@ -157,12 +159,8 @@ impl Writer {
     /// The properties of a block, one a line; as one record where a table cannot have them: where one is called like
     /// a key that means something else there, or two are called the same.
     fn properties(&mut self, properties: &[Property], reserved: &[&str]) {
-        let clashes = properties.iter().enumerate().any(|(i, property)| {
-            let name = property.name.name.as_str();
-            ["doc", "properties"].contains(&name)
-                || reserved.contains(&name)
-                || properties[..i].iter().any(|earlier| earlier.name.name == name)
-        });
+        let is_reserved = |name: &str| ["doc", "properties"].contains(&name) || reserved.contains(&name);
+        let clashes = !are_distinct(properties) || properties.iter().any(|property| is_reserved(&property.name.name));
         if clashes {
             self.entry("properties", |_| string(&documented_record(properties)));
         } else {
