@@ -150,8 +150,8 @@ fn draw(
         }
     }
     if items.is_empty() {
-        let message = "the scene paints nothing";
-        let hint = "a scene has a `paint REGION with TONE` statement; one with tones alone is a library to import";
+        let message = "the scene draws nothing";
+        let hint = "`paint REGION with TONE` does; a library of tones is imported by a scene that paints";
         let diagnostic = Diagnostic { span: start, ..Diagnostic::without_span(Code::Empty, message) };
         diagnostics.push(diagnostic.hint(hint));
         return None;

@@ -139,6 +139,7 @@ pub(super) fn call<'a>(
     let what = format!("`{}`", signature.name);
     let names: Vec<&str> = signature.params.iter().map(|param| param.name).collect();
     let places = assign(cx, &what, &names, arguments);
+    let lost = places.contains(&None);
     let mut given: Vec<Option<Given>> = signature.params.iter().map(|_| None).collect();
     let mut whole = true;
     for (argument, place) in arguments.iter().zip(places.iter().copied()) {
@@ -159,16 +160,19 @@ pub(super) fn call<'a>(
         whole &= !value.is_unknown();
         given[place] = Some(Given { value, span: argument.value.span });
     }
-    // An argument that no parameter takes is most likely a required one misspelt.
-    let misnamed = arguments.iter().zip(&places).any(|(argument, place)| argument.name.is_some() && place.is_none());
     for (param, value) in signature.params.iter().zip(&given) {
-        if param.need == Need::Required && value.is_none() && !misnamed {
+        if param.need == Need::Required && value.is_none() {
+            whole = false;
+            // An argument that none of the parameters took may have been meant for this one.
+            if lost {
+                continue;
+            }
             let message = format!("{what} needs `{}`", param.name);
             let hint = takes(&what, &names);
             cx.report(Diagnostic::error(Code::Missing, span, message).maybe_hint(hint));
         }
     }
-    whole &= !misnamed;
+    whole &= !lost;
     if !whole || cx.is_dead() {
         return Value::Unknown(signature.result);
     }

@@ -163,14 +163,13 @@ fn hint(value: &Value, kind: Kind, slot: Slot) -> Option<String> {
         (Value::Field(_), Kind::Number | Kind::Length | Kind::Angle) => {
             "this takes one value for the whole page, not a field".to_owned()
         }
-        (Value::Number(_), Kind::Angles) => "an angle for every tile: `fixed(45deg)`".to_owned(),
+        (Value::Number(_) | Value::Angle(_), Kind::Angles) => "an angle for every tile: `fixed(45deg)`".to_owned(),
         (Value::Number(_) | Value::Length(_), Kind::Point) => "a point is written `(10mm, 20mm)`".to_owned(),
         (Value::Tuple(members), Kind::Box) if members.len() == 2 => {
             "a box is written `(x, y, width, height)`".to_owned()
         }
         (Value::Tuple(_), Kind::Box | Kind::Point) => "its members are lengths".to_owned(),
         (Value::Word(word), _) => format!("`{word}` belongs elsewhere"),
-        (Value::Angle(_), Kind::Angles) => format!("`fixed({})` turns every tile so", value.text()),
         (Value::Field(_), Kind::Angles) => "`along(field)` turns tiles along a field of angles".to_owned(),
         (Value::Tone(_), _) => "tones stand behind `with`".to_owned(),
         _ => return None,

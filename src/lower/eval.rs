@@ -431,7 +431,8 @@ fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span
                 .map(|kind| format!("{} is one of {}", kind.noun(), names.join(", ")))
         }),
     };
-    if hint.is_none() && module.is_incomplete {
+    // The hint may be no more than a list of what there is.
+    if module.is_incomplete && !hint.as_ref().is_some_and(|hint| hint.starts_with("did you mean")) {
         return;
     }
     let message = format!("there is nothing called `{name}`");
@@ -503,8 +504,6 @@ pub(super) fn bind_arguments<'a>(
     let places = call::assign(cx, what, &names, arguments);
     let scope = Scope::inside(&cx.modules[module].scope);
     let mut whole = true;
-    // An argument that no parameter takes is most likely a required one misspelt.
-    let misnamed = arguments.iter().zip(&places).any(|(argument, place)| argument.name.is_some() && place.is_none());
     for argument in arguments.iter().zip(&places).filter(|(_, place)| place.is_none()).map(|(argument, _)| argument) {
         eval(cx, caller, &argument.value, Slot::of(Kind::Field));
     }
@@ -524,7 +523,8 @@ pub(super) fn bind_arguments<'a>(
             }
             (None, Some(default)) => expect(cx, &scope, default, pinned.map_or(Slot::ANY, Slot::of)),
             (None, None) => {
-                if !misnamed {
+                // An argument that none of the parameters took may have been meant for this one.
+                if !places.contains(&None) {
                     let message = format!("{what} needs `{}`", param.name.name);
                     let diagnostic = Diagnostic::error(Code::Missing, span, message);
                     cx.report(diagnostic.note(param.name.span, "declared here"));
@@ -733,8 +733,8 @@ fn matching<'a>(
     span: Span,
 ) -> Value {
     let value = eval(cx, scope, subject, Slot::ANY);
-    let sound = check_patterns(cx, scope, (subject, &value), arms, span);
-    if !sound || value.is_unknown() {
+    let covered = check_patterns(cx, scope, (subject, &value), arms, span);
+    if value.is_unknown() {
         let values: Vec<Value> = arms.iter().map(|arm| cx.dead(|cx| eval(cx, scope, &arm.value, slot))).collect();
         return common(values);
     }
@@ -746,6 +746,7 @@ fn matching<'a>(
     }
     match taken {
         Some(taken) => eval(cx, scope, &arms[taken].value, slot),
+        None if !covered => Value::UNKNOWN,
         None => {
             let message = format!("no arm covers {}", value.text());
             let diagnostic = Diagnostic::error(Code::Match, subject.span, message);
@@ -766,7 +767,7 @@ fn holds(pattern: &Pattern, value: &Value) -> bool {
     }
 }
 
-/// Reports patterns that can never match, match twice, or leave something uncovered; whether all is well.
+/// Patterns that can never match, match twice, or leave something uncovered whatever the value is; whether they cover all.
 fn check_patterns(
     cx: &mut Cx<'_, '_>,
     scope: &Rc<Scope<'_>>,
@@ -774,7 +775,6 @@ fn check_patterns(
     arms: &[ast::Arm],
     span: Span,
 ) -> bool {
-    let mut sound = true;
     for (i, arm) in arms.iter().enumerate() {
         let expected = match arm.pattern {
             Pattern::Any => None,
@@ -788,7 +788,6 @@ fn check_patterns(
         {
             let message = format!("this matches {}, but the value is {}", expected.noun(), value.describe());
             cx.report(Diagnostic::error(Code::Type, arm.span, message));
-            sound = false;
         }
         if let Some(earlier) =
             arms[..i].iter().find(|earlier| earlier.pattern == arm.pattern || earlier.pattern == Pattern::Any)
@@ -797,8 +796,8 @@ fn check_patterns(
             cx.report(Diagnostic::error(Code::Match, arm.span, message).note(earlier.span, "this one"));
         }
     }
-    if !sound || arms.iter().any(|arm| arm.pattern == Pattern::Any) {
-        return sound;
+    if arms.iter().any(|arm| arm.pattern == Pattern::Any) {
+        return true;
     }
     let choices = match (&subject.kind, value.kind()) {
         (_, Some(Kind::Bool)) => vec![Value::Bool(true), Value::Bool(false)],
@@ -807,13 +806,13 @@ fn check_patterns(
     };
     let missed: Vec<String> =
         choices.iter().filter(|choice| !arms.iter().any(|arm| holds(&arm.pattern, choice))).map(Value::text).collect();
-    if choices.is_empty() || !missed.is_empty() {
-        let message = match missed.is_empty() {
-            true => "the match does not cover every value".to_owned(),
-            false => format!("the match does not cover {}", missed.join(", ")),
-        };
-        cx.report(Diagnostic::error(Code::Match, span, message).hint("a last arm `_ => …` covers the rest"));
-        return false;
+    if !choices.is_empty() && missed.is_empty() {
+        return true;
     }
-    true
+    let message = match missed.is_empty() {
+        true => "the match does not cover every value".to_owned(),
+        false => format!("the match does not cover {}", missed.join(", ")),
+    };
+    cx.report(Diagnostic::error(Code::Match, span, message).hint("a last arm `_ => …` covers the rest"));
+    false
 }

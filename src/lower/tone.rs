@@ -83,34 +83,31 @@ pub(super) fn instantiate<'a>(
     if !cx.count_iteration(span) {
         return Value::Unknown(Some(Kind::Tone));
     }
-    let value = enter(cx, tone, span, &scope);
+    let name = tone.name.span;
+    if cx.is_runaway(name) {
+        return Value::Unknown(Some(Kind::Tone));
+    }
+    // Without parameters nothing can end the round.
+    if tone.params.is_empty() && cx.is_under_way(name) {
+        let message = format!("the tone {what} is derived from itself");
+        cx.report(Diagnostic::error(Code::Cycle, span, message).note(name, "declared here"));
+        cx.give_up();
+        return Value::Unknown(Some(Kind::Tone));
+    }
+    let value = cx.called(name, span, |cx| properties(cx, &scope, tone)).flatten();
     value.map_or(Value::Unknown(Some(Kind::Tone)), |tone| Value::Tone(Rc::new(tone)))
 }
 
 /// Evaluates a tone that nothing may paint with, with unknown arguments.
 pub(super) fn check<'a>(cx: &mut Cx<'a, '_>, tone: Tone<'a>) {
     let scope = eval::unknown_arguments(cx, tone.module, tone.params);
-    let checked = enter(cx, tone, tone.name.span, &scope);
-    if let (Some(tone), ToneBody::Properties(_)) = (checked, tone.body)
+    let name = tone.name.span;
+    let checked = cx.called(name, name, |cx| properties(cx, &scope, tone));
+    if let (Some(Some(tone)), ToneBody::Properties(_)) = (checked, tone.body)
         && !tone.broken
     {
         tone.check_pairs(cx);
     }
-}
-
-/// Evaluates a tone's properties, unless they are being evaluated already: a tone that derives from itself has none.
-fn enter<'a>(cx: &mut Cx<'a, '_>, tone: Tone<'a>, span: Span, scope: &Rc<Scope<'a>>) -> Option<ToneValue> {
-    let key = tone.name.span;
-    if cx.is_runaway(key) {
-        return None;
-    }
-    if cx.is_under_way(key) {
-        let message = format!("the tone `{}` derives from itself", tone.name.name);
-        cx.report(Diagnostic::error(Code::Cycle, key, message).label("this leads back to it"));
-        cx.give_up();
-        return None;
-    }
-    cx.called(key, span, |cx| properties(cx, scope, tone)).flatten()
 }
 
 fn properties<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, tone: Tone<'a>) -> Option<ToneValue> {
