@@ -16,7 +16,7 @@
 //! let drawing = compiled.drawing.expect("the scene is without fault");
 //! let mut svg = Vec::new();
 //! kakeami::back::svg::write(&drawing, None, &mut svg).expect("memory takes all that is written");
-//! assert!(svg.starts_with(b"<?xml"));
+//! assert!(svg.starts_with(b"<svg"));
 //! ```
 //!
 //! The pipeline: [`syntax`] reads a [`syntax::ast::Document`], [`lower`] makes a [`scene::Scene`] of it, the passes in

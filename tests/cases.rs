@@ -1,7 +1,10 @@
 //! Files dropped into `tests/cases/build` compile, and their SVG is pinned; files dropped into `tests/cases/fail` do
 //! not, and what is said of them is pinned.
 
-use crate::support::{compile_case, each, name, pin, scenes, shown, svg};
+use std::collections::BTreeSet;
+use std::fs;
+
+use crate::support::{compile_case, each, here, name, pin, scenes, shown, svg};
 
 #[test]
 fn scenes_that_compile() {
@@ -27,4 +30,16 @@ fn scenes_that_fail() {
         assert!(compiled.lowered.diagnostics.iter().any(kakeami::diag::Diagnostic::is_error));
         pin("fail", name(path), &said);
     });
+}
+
+/// What is pinned of cases that are no more is stale.
+#[test]
+fn every_snapshot_has_its_case() {
+    for folder in ["build", "fail", "later"] {
+        let cases: BTreeSet<String> =
+            scenes(&format!("tests/cases/{folder}")).iter().map(|path| format!("{}.snap", name(path))).collect();
+        let files = fs::read_dir(here("tests/snapshots").join(folder)).expect("the snapshots are there");
+        let pinned = files.map(|file| file.expect("the folder can be read").file_name().to_string_lossy().into_owned());
+        assert_eq!(pinned.filter(|file| !file.ends_with(".snap.new")).collect::<BTreeSet<_>>(), cases, "{folder}");
+    }
 }

@@ -170,7 +170,8 @@ proptest! {
         ));
         // A circle is drawn as a polygon around it at most this much larger.
         let far = radius + 0.01;
-        let from_middle = |point: kakeami::geom::Point| point.distance(kakeami::geom::Point::new(x, y));
+        let middle = kakeami::geom::Point::new(x, y);
+        let from_middle = |point: kakeami::geom::Point| point.distance(middle);
         for layer in &drawn.layers {
             for strokes in &layer.strokes {
                 let half = strokes.pen.to_mm() / 2.0;

@@ -165,10 +165,11 @@ fn name<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span: Span, 
         cx.report(call::not_yet(name, span));
         return Value::UNKNOWN;
     }
-    if cx.modules[scope.module].is_incomplete {
+    let hint = name_hint(cx, scope, name, slot);
+    // What an import would have brought that could not be read is not missed again.
+    if hint.is_none() && cx.modules[scope.module].is_incomplete {
         return Value::UNKNOWN;
     }
-    let hint = name_hint(cx, scope, name, slot);
     cx.report(Diagnostic::error(Code::UnknownName, span, format!("`{name}` is not known here")).maybe_hint(hint));
     Value::UNKNOWN
 }
@@ -413,9 +414,6 @@ fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span
     }
     let modules = cx.modules;
     let module = &modules[scope.module];
-    if module.is_incomplete {
-        return;
-    }
     let mut known: Vec<&str> = module.functions.keys().copied().collect();
     known.extend(module.opened.iter().flat_map(|&opened| modules[opened].functions.keys().copied()));
     // What fits the place comes first: a misspelt shape is no square root.
@@ -433,6 +431,10 @@ fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span
                 .map(|kind| format!("{} is one of {}", kind.noun(), names.join(", ")))
         }),
     };
+    // The hint may be no more than a list of what there is.
+    if module.is_incomplete && !hint.as_ref().is_some_and(|hint| hint.starts_with("did you mean")) {
+        return;
+    }
     let message = format!("there is nothing called `{name}`");
     cx.report(Diagnostic::error(Code::UnknownFunction, span, message).maybe_hint(hint));
 }

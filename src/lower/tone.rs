@@ -171,7 +171,7 @@ pub(super) fn expect_tone<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, expr: 
             let alias = module.aliases.iter().find(|(_, index)| modules[**index].tones.contains_key(name.as_str()));
             alias.map(|(alias, _)| format!("`{alias}.{name}` is a tone"))
         });
-        if !module.is_incomplete {
+        if hint.is_some() || !module.is_incomplete {
             let message = format!("there is no tone `{name}`");
             cx.report(Diagnostic::error(Code::UnknownTone, span, message).maybe_hint(hint));
         }
