@@ -427,7 +427,8 @@ fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span
         None => did_you_mean(name, known).or_else(|| {
             let names: Vec<_> = fitting.iter().map(|name| format!("`{name}`")).collect();
             slot.kind
-                .filter(|_| !names.is_empty())
+                // A long list is for the reference.
+                .filter(|_| (1..=12).contains(&names.len()))
                 .map(|kind| format!("{} is one of {}", kind.noun(), names.join(", ")))
         }),
     };
