@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 use std::sync::Arc;
 
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, grouped};
 use crate::field::Image;
 use crate::geom::Length;
 use crate::loader::Loader;
@@ -234,17 +234,4 @@ impl<'a, 'c> Cx<'a, 'c> {
     pub(super) fn remember_file(&mut self, path: &str, bytes: &Arc<[u8]>) {
         self.files.insert(path.to_owned(), Arc::clone(bytes));
     }
-}
-
-/// A number with its thousands apart: `2,000,000`.
-pub(super) fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut out = String::with_capacity(digits.len() + digits.len() / 3);
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(digit);
-    }
-    out
 }

@@ -2,14 +2,14 @@
 
 use std::rc::Rc;
 
-use crate::diag::{Code, Diagnostic, did_you_mean};
+use crate::diag::{Code, Diagnostic, did_you_mean, grouped};
 use crate::geom::Length;
 use crate::scene::Colour;
 use crate::span::Span;
 use crate::syntax::ast::{self, Argument, Expr, ExprKind, Pattern, StringPart, Unit};
 
 use super::convert::{self, Slot, coerce};
-use super::cx::{Cx, grouped};
+use super::cx::Cx;
 use super::modules::Function;
 use super::scope::{Binding, Declared, Scope};
 use super::value::{FieldUnit, Kind, Member, TypedField, Value};

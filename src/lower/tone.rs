@@ -226,11 +226,12 @@ impl ToneValue {
         let name = &property.name;
         let Some((known, slot)) = PROPERTIES.iter().find(|(known, _)| *known == name.name) else {
             self.broken = true;
-            eval::eval(cx, scope, &property.value, Slot::of(Kind::Field));
             if LATER.contains(&name.name.as_str()) {
+                // Its value belongs to the later version as well.
                 cx.report(not_yet(&name.name, name.span));
                 return;
             }
+            eval::eval(cx, scope, &property.value, Slot::of(Kind::Field));
             let names = PROPERTIES.iter().map(|(name, _)| *name);
             let hint = did_you_mean(&name.name, names.clone()).unwrap_or_else(|| {
                 format!("tones have {}", names.map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "))

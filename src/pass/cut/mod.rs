@@ -68,7 +68,8 @@ pub fn cut(
         Blend::Contour => chunks.iter().flat_map(|chunk| &chunk.most).map(|&full| Layers { full, part: 0.0 }).collect(),
     };
     warnings.extend(clamped(paint, &field, &standing));
-    if standing.iter().all(|&standing| standing == Standing::Absent) {
+    // A region off the canvas was warned of where it was found.
+    if !visible.is_empty() && standing.iter().all(|&standing| standing == Standing::Absent) {
         let message = format!("`{}` has no tile on its region", paint.name);
         warnings.push(Diagnostic::warning(Code::NoTiles, paint.span, message));
     }

@@ -4,7 +4,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, grouped};
 use crate::scene::Limits;
 use crate::span::Span;
 
@@ -20,7 +20,7 @@ impl Exceeded {
     /// What to tell.
     pub(super) fn diagnostic(self, limits: &Limits, span: Span) -> Diagnostic {
         let limit = limits.strokes;
-        Diagnostic::error(Code::Limit, span, format!("the drawing has more than {limit} strokes"))
+        Diagnostic::error(Code::Limit, span, format!("the drawing has more than {} strokes", grouped(limit)))
             .label("this is too dense, or too large")
             .hint("a wider pitch or larger tiles take fewer strokes; `--limit strokes=…` lifts the limit")
     }

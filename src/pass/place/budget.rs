@@ -1,6 +1,6 @@
 //! How many tiles a placement may have, and the words for too many.
 
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{self, Code, Diagnostic};
 use crate::scene::{Amount, GridSize, Placement};
 use crate::span::Span;
 
@@ -112,15 +112,7 @@ fn grouped(value: f64) -> String {
     if value.is_nan() || value >= 1e15 {
         return "more than 1,000,000,000,000,000".to_owned();
     }
-    let digits = (value as u64).to_string();
-    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
+    diag::grouped(value as u64)
 }
 
 #[cfg(test)]
