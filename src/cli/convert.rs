@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::diag::{Code, Diagnostic};
 use crate::span::{Sources, Syntax};
-use crate::syntax::{format, kake, toml};
+use crate::syntax::{self, format, kake, toml};
 
 use super::files::{plain, print, write_beside};
 use super::{Ended, report};
@@ -53,24 +52,19 @@ pub(super) fn run(arguments: &ConvertArgs) -> Ended {
     };
     let name = arguments.input.display().to_string();
     let mut sources = Sources::new();
-    let text = match kake::decode_utf8(&bytes) {
-        Ok(text) => text,
-        Err(offset) => {
-            let message = format!("{name} is not UTF-8: byte {} does not fit", offset + 1);
-            let diagnostic = Diagnostic::without_span(Code::Encoding, message).hint("save the file as UTF-8");
-            return report::diagnostics(&[diagnostic], &sources);
-        }
+    let (source, text) = match syntax::decode(&name, &bytes, from, &mut sources) {
+        Ok(decoded) => decoded,
+        Err(diagnostic) => return report::diagnostics(&[diagnostic], &sources),
     };
-    let source = sources.add(&name, text, from);
     let (document, diagnostics) = match from {
-        Syntax::Kake => kake::parse(source, text),
-        Syntax::Toml => toml::read(source, text),
+        Syntax::Kake => kake::parse(source, &text),
+        Syntax::Toml => toml::read(source, &text),
     };
     if report::diagnostics(&diagnostics, &sources) == Ended::Fault {
         return Ended::Fault;
     }
     let converted = match to {
-        Syntax::Kake => format::format(&document, if from == Syntax::Kake { text } else { "" }),
+        Syntax::Kake => format::format(&document, if from == Syntax::Kake { &text } else { "" }),
         Syntax::Toml => toml::write(&document),
     };
     if to == Syntax::Toml && !document.comments.is_empty() {

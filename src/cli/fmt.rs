@@ -6,9 +6,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::diag::{Code, Diagnostic};
 use crate::span::{Sources, Syntax};
-use crate::syntax::{format, kake};
+use crate::syntax::{self, format, kake};
 
 use super::files::{plain, print, write_beside};
 use super::{Ended, report};
@@ -85,18 +84,13 @@ fn one(file: &Path, check: bool) -> Ended {
 /// The canonical form of a scene; a scene with syntax errors has none.
 fn formatted(name: &str, bytes: &[u8]) -> Result<String, Ended> {
     let mut sources = Sources::new();
-    let text = match kake::decode_utf8(bytes) {
-        Ok(text) => text,
-        Err(offset) => {
-            let message = format!("{name} is not UTF-8: byte {} does not fit", offset + 1);
-            let diagnostic = Diagnostic::without_span(Code::Encoding, message).hint("save the file as UTF-8");
-            return Err(report::diagnostics(&[diagnostic], &sources));
-        }
+    let (source, text) = match syntax::decode(name, bytes, Syntax::Kake, &mut sources) {
+        Ok(decoded) => decoded,
+        Err(diagnostic) => return Err(report::diagnostics(&[diagnostic], &sources)),
     };
-    let source = sources.add(name, text, Syntax::Kake);
-    let (document, diagnostics) = kake::parse(source, text);
+    let (document, diagnostics) = kake::parse(source, &text);
     if report::diagnostics(&diagnostics, &sources) == Ended::Fault {
         return Err(Ended::Fault);
     }
-    Ok(format::format(&document, text))
+    Ok(format::format(&document, &text))
 }

@@ -41,6 +41,8 @@ const LATER: [&str; 3] = ["bleed", "gain", "repeat"];
 
 /// Pixels per inch where neither `dpi` nor `pixels` says otherwise: the least that print shops take for line art.
 const DEFAULT_DPI: f64 = 600.0;
+/// The smallest sheet, in millimetres a side: less than a pixel of the finest printers.
+const SMALLEST: f64 = 0.01;
 /// The largest sheet, in millimetres a side.
 const LARGEST: f64 = 100_000.0;
 /// The finest resolution.
@@ -201,8 +203,8 @@ impl<'a> Reader<'_, 'a, '_> {
             return sheet.map(|(_, width, height)| [Length::mm(*width), Length::mm(*height)]);
         }
         let size = value.as_point()?;
-        if !(size.x > 0.0 && size.y > 0.0) {
-            return self.refuse(property.value.span, "a canvas needs a width and a height greater than zero");
+        if !(size.x >= SMALLEST && size.y >= SMALLEST) {
+            return self.refuse(property.value.span, format!("a canvas is at least {SMALLEST}mm wide and high"));
         }
         if size.x > LARGEST || size.y > LARGEST {
             return self.refuse(property.value.span, "a canvas is at most 100 metres wide and high");

@@ -18,7 +18,13 @@ use super::params;
 use super::value::Value;
 
 /// How deep evaluation may go before the stack is at risk. The thread that lowers has room for it.
-const DEPTH: u32 = 4096;
+const DEPTH: u32 = 10_000;
+
+/// How many mistakes are reported.
+const MOST_REPORTED: usize = 1000;
+
+/// How many mistakes are reported with near names.
+const MOST_HINTED: usize = 200;
 
 /// The state of lowering. `'a` is the life of the documents.
 pub(super) struct Cx<'a, 'c> {
@@ -42,6 +48,8 @@ pub(super) struct Cx<'a, 'c> {
     pub(super) naming: Vec<(String, u32)>,
     pub(super) images: BTreeMap<(String, &'static str), Option<Arc<Image>>>,
     pub(super) drawings: BTreeMap<String, Option<Rc<SvgFile>>>,
+    /// Warnings of tones that lack something, until a paint says so.
+    pub(super) lacking: Vec<Diagnostic>,
     /// Dead branches that were checked already.
     pub(super) checked: BTreeSet<Span>,
     /// Calls of functions, tones and lazy values that are under way.
@@ -80,6 +88,7 @@ impl<'a, 'c> Cx<'a, 'c> {
             naming: Vec::new(),
             images: BTreeMap::new(),
             drawings: BTreeMap::new(),
+            lacking: Vec::new(),
             checked: BTreeSet::new(),
             calls: 0,
             under_way: Vec::new(),
@@ -95,16 +104,28 @@ impl<'a, 'c> Cx<'a, 'c> {
     }
 
     /// The diagnostics and the files that were read.
-    pub(super) fn finish(self) -> (Vec<Diagnostic>, BTreeMap<String, Arc<[u8]>>) {
+    pub(super) fn finish(mut self) -> (Vec<Diagnostic>, BTreeMap<String, Arc<[u8]>>) {
+        self.diagnostics.append(&mut self.lacking);
         (self.diagnostics, self.files)
     }
 
     /// Reports a mistake that is one whatever the values are. A second one of the same kind at the same place says
     /// nothing new.
     pub(super) fn report(&mut self, diagnostic: Diagnostic) {
-        if self.reported.insert((diagnostic.code, diagnostic.span)) {
+        if self.reported.len() > MOST_REPORTED || !self.reported.insert((diagnostic.code, diagnostic.span)) {
+            return;
+        }
+        if self.reported.len() > MOST_REPORTED {
+            let message = format!("there are more than {MOST_REPORTED} mistakes; the rest are not shown");
+            self.diagnostics.push(Diagnostic { message, hint: None, notes: Vec::new(), ..diagnostic });
+        } else {
             self.diagnostics.push(diagnostic);
         }
+    }
+
+    /// Whether so many mistakes were found that near names are no longer looked for: each takes a walk over all names.
+    pub(super) fn is_swamped(&self) -> bool {
+        self.reported.len() > MOST_HINTED
     }
 
     /// Reports a mistake in a value, unless the code is only checked: what never runs has no values.
@@ -135,7 +156,7 @@ impl<'a, 'c> Cx<'a, 'c> {
     /// Goes one level deeper; `None`, with a diagnostic, where that is too deep.
     pub(super) fn deeper<T>(&mut self, span: Span, inner: impl FnOnce(&mut Self) -> T) -> Option<T> {
         if self.depth >= DEPTH {
-            let message = "evaluation goes too deep: values and calls lead into each other";
+            let message = format!("values lead into each other more than {DEPTH} steps deep");
             self.report(Diagnostic::error(Code::Recursion, span, message));
             return None;
         }
@@ -195,7 +216,7 @@ impl<'a, 'c> Cx<'a, 'c> {
         if of_module {
             self.dead = 0;
         }
-        let result = self.nested(span, inner);
+        let result = self.deeper(span, inner);
         self.dead = dead;
         result
     }

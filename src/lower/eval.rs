@@ -147,22 +147,24 @@ fn string<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, parts: &'a [StringPart
 
 /// What a bare name stands for: a local, else a word of its place.
 fn name<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span: Span, slot: Slot) -> Value {
-    if let Some(value) = lookup(cx, scope, name, span) {
-        return value;
+    // Tones have a name space of their own, so that a value of another kind does not hide one.
+    let tone = if slot.kind == Some(Kind::Tone) { tone::find(cx, scope.module, name) } else { None };
+    match (lookup(cx, scope, name, span), tone) {
+        (Some(value @ (Value::Tone(_) | Value::Unknown(_))), _) | (Some(value), None) => return value,
+        (_, Some(tone)) => return tone::instantiate(cx, scope, tone, &[], span),
+        (None, None) => {}
     }
     if let Some(word) = slot.words.iter().find(|word| **word == convert::spelling(name)) {
         return Value::Word(word);
-    }
-    if slot.kind == Some(Kind::Tone)
-        && let Some(tone) = tone::find(cx, scope.module, name)
-    {
-        return tone::instantiate(cx, scope, tone, &[], span);
     }
     if let Some(value) = vocabulary::name(cx, name, span, slot) {
         return value;
     }
     if vocabulary::is_later(name) {
         cx.report(call::not_yet(name, span));
+        return Value::UNKNOWN;
+    }
+    if cx.modules[scope.module].broken.contains(name) {
         return Value::UNKNOWN;
     }
     let hint = name_hint(cx, scope, name, slot);
@@ -175,6 +177,9 @@ fn name<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span: Span, 
 }
 
 fn name_hint<'a>(cx: &Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, slot: Slot) -> Option<String> {
+    if cx.is_swamped() {
+        return None;
+    }
     if matches!(name, "x" | "y") {
         return Some(format!("`{name}` is a point's place in fields: `field f = …`"));
     }
@@ -269,7 +274,7 @@ fn bind<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, binding: &'a ast::Bindin
     cx.naming.pop();
     match declared {
         Declared::Param(domain) => params::settle(cx, scope, binding, domain, value),
-        Declared::Region => {
+        Declared::Region | Declared::Let => {
             if let Value::Region(region) = &value
                 && region.is_empty()
             {
@@ -279,7 +284,7 @@ fn bind<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, binding: &'a ast::Bindin
             }
             value
         }
-        Declared::Let | Declared::Field => value,
+        Declared::Field => value,
     }
 }
 
@@ -414,6 +419,14 @@ fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span
     }
     let modules = cx.modules;
     let module = &modules[scope.module];
+    if module.broken.contains(name) {
+        return;
+    }
+    if cx.is_swamped() {
+        let message = format!("there is nothing called `{name}`");
+        cx.report(Diagnostic::error(Code::UnknownFunction, span, message));
+        return;
+    }
     let mut known: Vec<&str> = module.functions.keys().copied().collect();
     known.extend(module.opened.iter().flat_map(|&opened| modules[opened].functions.keys().copied()));
     // What fits the place comes first: a misspelt shape is no square root.

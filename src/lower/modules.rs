@@ -1,13 +1,13 @@
 //! Reading a scene with all it imports, and the tables of what each file declares.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
 use crate::diag::{Code, Diagnostic};
 use crate::loader::{self, LoadError, Loader};
 use crate::span::{Sources, Span, Syntax};
-use crate::syntax::ast::{Document, StatementKind, Text, ToneBody};
-use crate::syntax::{self, ast};
+use crate::syntax::ast::{Document, ExprKind, StatementKind, Text, ToneBody};
+use crate::syntax::{self, ast, kake};
 
 use super::cx::Cx;
 use super::scope::{Binding, Declared, Scope};
@@ -21,6 +21,8 @@ const IMPORT_DEPTH: usize = 64;
 pub(super) struct File {
     path: String,
     document: Document,
+    /// Where some of it could not be read: the names that its text declares.
+    broken: Option<Vec<String>>,
     /// For every import statement that could be followed: the file's index and the statement's.
     imports: Vec<(usize, usize)>,
 }
@@ -42,6 +44,12 @@ pub(super) struct Module<'a> {
     pub(super) lost: Vec<&'a str>,
     /// Whether an import without a name could not be read: nobody knows what it would have brought.
     pub(super) is_incomplete: bool,
+    /// Some of its statements or properties could not be read, which was reported.
+    pub(super) is_damaged: bool,
+    /// Names whose declarations could not be read.
+    pub(super) broken: BTreeSet<&'a str>,
+    /// The names of the tones that others are derived from.
+    pub(super) bases: BTreeSet<&'a str>,
 }
 
 /// A declared tone.
@@ -103,7 +111,7 @@ impl Reader<'_> {
         let index = self.files.len();
         let document = self.parse(path, from);
         self.known.insert(path.to_owned(), document.as_ref().map(|_| index));
-        let document = document?;
+        let (document, broken) = document?;
         let imports: Vec<(usize, Text)> = document
             .statements
             .iter()
@@ -113,7 +121,7 @@ impl Reader<'_> {
                 _ => None,
             })
             .collect();
-        self.files.push(File { path: path.to_owned(), document, imports: Vec::new() });
+        self.files.push(File { path: path.to_owned(), document, broken, imports: Vec::new() });
         self.open.push((path.to_owned(), from));
         for (statement, text) in imports {
             let Some(target) = loader::resolve(path, &text.value) else {
@@ -128,7 +136,8 @@ impl Reader<'_> {
         Some(index)
     }
 
-    fn parse(&mut self, path: &str, from: Option<Span>) -> Option<Document> {
+    /// Reads one file's document, and the names that it means to declare where some of it could not be read.
+    fn parse(&mut self, path: &str, from: Option<Span>) -> Option<(Document, Option<Vec<String>>)> {
         let extension = path.rsplit_once('.').map_or("", |(_, extension)| extension);
         let is_toml = extension.eq_ignore_ascii_case("toml");
         if from.is_some() && !is_toml && !extension.eq_ignore_ascii_case("kake") && self.loader.load(path).is_ok() {
@@ -145,22 +154,22 @@ impl Reader<'_> {
                 return None;
             }
         };
-        let text = match syntax::kake::decode_utf8(&bytes) {
-            Ok(text) => text,
-            Err(offset) => {
-                let message = format!("`{path}` is not UTF-8: byte {} does not fit", offset + 1);
-                self.report(Code::Encoding, from, message, Some("save the file as UTF-8".to_owned()));
+        let syntax = if is_toml { Syntax::Toml } else { Syntax::Kake };
+        let (source, text) = match syntax::decode(path, &bytes, syntax, self.sources) {
+            Ok(decoded) => decoded,
+            Err(mut diagnostic) => {
+                diagnostic.notes.extend(from.map(|span| (span, "imported here".to_owned())));
+                self.diagnostics.push(diagnostic);
                 return None;
             }
         };
-        let syntax = if is_toml { Syntax::Toml } else { Syntax::Kake };
-        let source = self.sources.add(path, text, syntax);
         let (document, diagnostics) = match syntax {
-            Syntax::Kake => syntax::kake::parse(source, text),
-            Syntax::Toml => syntax::toml::read(source, text),
+            Syntax::Kake => kake::parse(source, &text),
+            Syntax::Toml => syntax::toml::read(source, &text),
         };
+        let damaged = diagnostics.iter().any(Diagnostic::is_error);
         self.diagnostics.extend(diagnostics);
-        Some(document)
+        Some((document, damaged.then(|| declared_words(&text))))
     }
 
     fn report_cycle(&mut self, path: &str, start: usize, from: Option<Span>) {
@@ -247,7 +256,11 @@ fn declare_one<'a>(index: usize, file: &'a File, diagnostics: &mut Vec<Diagnosti
         opened: Vec::new(),
         lost: Vec::new(),
         is_incomplete: false,
+        is_damaged: file.broken.is_some(),
+        broken: BTreeSet::new(),
+        bases: BTreeSet::new(),
     };
+    module.broken.extend(file.broken.iter().flatten().map(String::as_str));
     for (i, statement) in file.document.statements.iter().enumerate() {
         let twice = match &statement.kind {
             StatementKind::Import { alias, .. } if !file.imports.iter().any(|(import, _)| *import == i) => {
@@ -259,6 +272,7 @@ fn declare_one<'a>(index: usize, file: &'a File, diagnostics: &mut Vec<Diagnosti
             }
             StatementKind::Tone { name, params, body } => {
                 let tone = Tone { module: index, name, params, body };
+                module.bases.extend(base_of(body));
                 module.tones.insert(&name.name, tone).map(|earlier| (name, earlier.name.span))
             }
             StatementKind::Fn { name, params, body } => {
@@ -272,6 +286,36 @@ fn declare_one<'a>(index: usize, file: &'a File, diagnostics: &mut Vec<Diagnosti
         }
     }
     module
+}
+
+/// The name of the tone that another is derived from.
+fn base_of(body: &ToneBody) -> Option<&str> {
+    let ToneBody::Derived { base, .. } = body else { return None };
+    let named = match &base.kind {
+        ExprKind::Call(callee, _) => callee,
+        _ => base,
+    };
+    match &named.kind {
+        ExprKind::Name(name) => Some(name),
+        ExprKind::Member(_, name) => Some(&name.name),
+        _ => None,
+    }
+}
+
+/// Names that a text means to declare, for a file in which some statements could not be read.
+fn declared_words(text: &str) -> Vec<String> {
+    const WORDS: [&str; 6] = ["let", "param", "field", "region", "tone", "fn"];
+    let mut words = text.split(|character: char| !character.is_alphanumeric() && character != '_');
+    let mut names = Vec::new();
+    while let Some(word) = words.next() {
+        if WORDS.contains(&word)
+            && let Some(name) = words.next()
+            && kake::is_identifier(name)
+        {
+            names.push(name.to_owned());
+        }
+    }
+    names
 }
 
 /// Puts a `let`, `param`, `field` or `region` into a scope; name and earlier place where it is there already.

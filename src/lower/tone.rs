@@ -56,6 +56,9 @@ const PROPERTIES: [(&str, Slot); 13] = [
     ("edge", Slot::words(&["clip", "whole", "centre"])),
 ];
 
+/// Properties without which nothing can be painted.
+const REQUIRED: [&str; 2] = ["place", "fill"];
+
 /// Properties that a later version draws.
 const LATER: [&str; 4] = ["darkness", "hand", "range", "solid"];
 
@@ -103,10 +106,11 @@ pub(super) fn check<'a>(cx: &mut Cx<'a, '_>, tone: Tone<'a>) {
     let scope = eval::unknown_arguments(cx, tone.module, tone.params);
     let name = tone.name.span;
     let checked = cx.called(name, name, |cx| properties(cx, &scope, tone));
-    if let (Some(Some(tone)), ToneBody::Properties(_)) = (checked, tone.body)
-        && !tone.broken
+    if let (Some(Some(value)), ToneBody::Properties(_)) = (checked, tone.body)
+        && !value.broken
     {
-        tone.check_pairs(cx);
+        value.check_pairs(cx);
+        value.check_whole(cx, tone);
     }
 }
 
@@ -126,6 +130,8 @@ fn properties<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, tone: Tone<'a>) ->
             (base, with)
         }
     };
+    // What a damaged file's tone lacks may have stood in what could not be read.
+    value.broken |= cx.modules[tone.module].is_damaged;
     value.name.clone_from(&tone.name.name);
     value.declared = tone.name.span;
     let mut seen: Vec<(&str, Span)> = Vec::new();
@@ -171,7 +177,7 @@ pub(super) fn expect_tone<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, expr: 
             let alias = module.aliases.iter().find(|(_, index)| modules[**index].tones.contains_key(name.as_str()));
             alias.map(|(alias, _)| format!("`{alias}.{name}` is a tone"))
         });
-        if hint.is_some() || !module.is_incomplete {
+        if (hint.is_some() || !module.is_incomplete) && !module.broken.contains(name.as_str()) {
             let message = format!("there is no tone `{name}`");
             cx.report(Diagnostic::error(Code::UnknownTone, span, message).maybe_hint(hint));
         }
@@ -282,6 +288,21 @@ impl ToneValue {
         }
     }
 
+    /// Notes a tone that nothing can be painted with, unless others derive from it: they may give what it lacks.
+    fn check_whole(&self, cx: &mut Cx<'_, '_>, tone: Tone<'_>) {
+        let missing: Vec<String> =
+            REQUIRED.iter().filter(|name| self.get(name).is_none()).map(|name| format!("`{name}`")).collect();
+        if missing.is_empty() || cx.modules.iter().any(|module| module.bases.contains(tone.name.name.as_str())) {
+            return;
+        }
+        let message = format!("the tone `{}` has no {}", tone.name.name, missing.join(" and no "));
+        cx.lacking.push(
+            Diagnostic::warning(Code::Missing, tone.name.span, message)
+                .label("nothing can be painted with it")
+                .hint("a tone that others derive from may leave these to them"),
+        );
+    }
+
     /// Properties that do not go together.
     fn check_pairs(&self, cx: &mut Cx<'_, '_>) -> bool {
         let (Some(place), Some(angle)) = (self.get("place"), self.get("angle")) else { return true };
@@ -306,11 +327,12 @@ impl ToneValue {
             return None;
         }
         let mut whole = self.check_pairs(cx);
-        for name in ["place", "fill"] {
+        for name in REQUIRED {
             if self.get(name).is_none() {
                 let message = format!("the tone `{}` has no `{name}`", self.name);
                 let diagnostic = Diagnostic::error(Code::Missing, span, message);
                 cx.report(diagnostic.note(self.declared, format!("give `{name}` here")));
+                cx.lacking.retain(|lacking| lacking.span != Some(self.declared));
                 whole = false;
             }
         }
