@@ -15,7 +15,7 @@ use super::cx::Cx;
 use super::scope::{Binding, Scope};
 use super::tone::{self, ToneValue};
 use super::value::{Kind, Value};
-use super::{canvas, eval, modules};
+use super::{branch, canvas, eval, modules, names};
 
 /// What is drawn before paints have their names.
 enum Drawn {
@@ -139,7 +139,7 @@ fn block<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, body: &'a [Statement], 
     for statement in body {
         match &statement.kind {
             StatementKind::Let(binding) | StatementKind::Field(binding) | StatementKind::Region(binding) => {
-                eval::force(cx, scope, &binding.name.name, binding.name.span);
+                names::force(cx, scope, &binding.name.name, binding.name.span);
             }
             _ => {}
         }
@@ -259,7 +259,7 @@ fn choose<'a>(
 ) {
     let mut taken = false;
     for (condition, body) in branches {
-        let holds = eval::condition(cx, scope, condition, Slot::ANY);
+        let holds = branch::condition(cx, scope, condition, Slot::ANY);
         if let Value::Field(_) = holds {
             let message = "this condition varies over the page, but a statement is carried out or not";
             cx.report(Diagnostic::error(Code::Type, condition.span, message));

@@ -6,6 +6,7 @@
 //! One evaluator serves for both. Code that cannot run (a branch not taken, a function's body, a tone that nothing paints
 //! with) is evaluated with unknown values: names, arguments and kinds are checked, ranges are not.
 
+mod branch;
 mod call;
 mod canvas;
 mod convert;
@@ -14,7 +15,9 @@ mod draw;
 mod eval;
 mod experiment;
 mod files;
+mod function;
 mod modules;
+mod names;
 mod ops;
 mod params;
 mod scope;

@@ -11,7 +11,7 @@ use crate::syntax::{self, ast, kake};
 
 use super::cx::Cx;
 use super::scope::{Binding, Declared, Scope};
-use super::{draw, eval, tone};
+use super::{draw, function, names, tone};
 
 /// How many files deep imports may go.
 const IMPORT_DEPTH: usize = 64;
@@ -382,10 +382,10 @@ pub(super) fn check_declarations(cx: &mut Cx<'_, '_>) {
                 | StatementKind::Field(binding)
                 | StatementKind::Region(binding)
                 | StatementKind::Param { binding, .. } => {
-                    eval::force(cx, &module.scope, &binding.name.name, binding.name.span);
+                    names::force(cx, &module.scope, &binding.name.name, binding.name.span);
                 }
                 StatementKind::Fn { name, params, body } => {
-                    eval::check_function(cx, Function { module: index, name, params, body });
+                    function::check_function(cx, Function { module: index, name, params, body });
                 }
                 StatementKind::Tone { name, params, body } => {
                     tone::check(cx, Tone { module: index, name, params, body });

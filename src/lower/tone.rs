@@ -14,10 +14,10 @@ use crate::syntax::ast::{Argument, Expr, ExprKind, Property, ToneBody};
 use super::call::not_yet;
 use super::convert::{Slot, coerce};
 use super::cx::Cx;
-use super::eval;
 use super::modules::Tone;
 use super::scope::Scope;
 use super::value::{FieldUnit, Kind, TypedField, Value};
+use super::{eval, function, names};
 
 /// A tone with its properties as far as they are given.
 #[derive(Debug, Clone)]
@@ -81,7 +81,7 @@ pub(super) fn instantiate<'a>(
     span: Span,
 ) -> Value {
     let what = format!("`{}`", tone.name.name);
-    let scope = eval::bind_arguments(cx, (caller, Slot::ANY), &what, (tone.module, tone.params), arguments, span);
+    let scope = function::bind_arguments(cx, (caller, Slot::ANY), &what, (tone.module, tone.params), arguments, span);
     let Some(scope) = scope else { return Value::Unknown(Some(Kind::Tone)) };
     if !cx.count_iteration(span) {
         return Value::Unknown(Some(Kind::Tone));
@@ -103,7 +103,7 @@ pub(super) fn instantiate<'a>(
 
 /// Evaluates a tone that nothing may paint with, with unknown arguments.
 pub(super) fn check<'a>(cx: &mut Cx<'a, '_>, tone: Tone<'a>) {
-    let scope = eval::unknown_arguments(cx, tone.module, tone.params);
+    let scope = function::unknown_arguments(cx, tone.module, tone.params);
     let name = tone.name.span;
     let checked = cx.called(name, name, |cx| properties(cx, &scope, tone));
     if let (Some(Some(value)), ToneBody::Properties(_)) = (checked, tone.body)
@@ -164,7 +164,7 @@ pub(super) fn expect_tone<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, expr: 
     };
     if let Some((name, arguments, span)) = unknown
         && find(cx, scope.module, name).is_none()
-        && (matches!(expr.kind, ExprKind::Call(..)) || eval::lookup(cx, scope, name, span).is_none())
+        && (matches!(expr.kind, ExprKind::Call(..)) || names::lookup(cx, scope, name, span).is_none())
     {
         for argument in arguments {
             eval::eval(cx, scope, &argument.value, Slot::of(Kind::Field));
@@ -194,14 +194,14 @@ fn member_tone<'a>(
     member: &'a crate::syntax::ast::Ident,
     span: Span,
 ) -> Value {
-    let Some(module) = eval::module_of(cx, scope, base) else { return Value::Unknown(Some(Kind::Tone)) };
+    let Some(module) = names::module_of(cx, scope, base) else { return Value::Unknown(Some(Kind::Tone)) };
     let modules = cx.modules;
     if let Some(&tone) = modules[module].tones.get(member.name.as_str()) {
         return instantiate(cx, scope, tone, &[], span);
     }
     let inner = &modules[module].scope;
     if inner.own(&member.name).is_some() {
-        let value = eval::force(cx, inner, &member.name, member.span);
+        let value = names::force(cx, inner, &member.name, member.span);
         return coerce(cx, value, Slot::of(Kind::Tone), span);
     }
     let message = format!("`{}` declares no tone `{}`", modules[module].path, member.name);
