@@ -153,6 +153,32 @@ fn too_many_tiles_and_strokes_are_refused_before_they_are_made() {
 }
 
 #[test]
+fn tangled_outlines_are_refused_before_they_are_resolved() {
+    // Corners all over the canvas, each far from the one before.
+    let corners: Vec<_> = (1..8_000_u64).map(|i| (i * i * 7919 % 20_011, i * i * i * 1_049 % 20_021)).collect();
+    let joined =
+        |corner: fn(&(u64, u64)) -> String, between: &str| corners.iter().map(corner).collect::<Vec<_>>().join(between);
+    let path = joined(|(x, y)| format!("{x} {y}"), " L ");
+    let list = joined(|(x, y)| format!("({x}um, {y}um)"), ", ");
+    refused(&format!("{HEAD}let a = path(\"M {path} Z\")\n"), Code::Limit);
+    refused(&format!("{HEAD}let a = polygon([{list}])\n"), Code::Limit);
+    // Two combs, each of which crosses nothing by itself.
+    let teeth = |is_upright: bool| {
+        let tooth = |i: u32| match (i % 2 * 20, f64::from(i) / 250.0) {
+            (end, at) if is_upright => format!("{at} {end}"),
+            (end, at) => format!("{end} {at}"),
+        };
+        (0..5_000).map(tooth).collect::<Vec<_>>().join(" L ")
+    };
+    let (upright, level) = (teeth(true), teeth(false));
+    let combs = format!("{HEAD}let a = path(\"M {upright} L 21 -1 Z\")\nlet b = path(\"M {level} L -1 21 Z\")\n");
+    for operator in ["+", "-", "&"] {
+        refused(&format!("{combs}let c = a {operator} b\n"), Code::Limit);
+    }
+    refused(&format!("{combs}let c = inset(a, -5mm)\n"), Code::Limit);
+}
+
+#[test]
 fn extreme_canvases_are_met() {
     for size in ["(1e-300mm, 1e-300mm)", "(1e9mm, 1e9mm)", "(0.001mm, 90000mm)", "(1e300mm, 1mm)"] {
         let text = format!(

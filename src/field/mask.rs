@@ -4,6 +4,8 @@
 //! the brightness, taken as linear along the way from one sample to the next, passes the threshold. Where four samples
 //! are dark and bright crosswise, the dark ones stay apart.
 
+use std::fmt;
+
 use super::Image;
 use crate::geom::{Point, Rect, Vec2};
 use crate::region::{FillRule, Region, contained};
@@ -12,14 +14,31 @@ use crate::region::{FillRule, Region, contained};
 /// one is that below and not that to the right.
 type Passage = u64;
 
+/// Most corners of an outline that is traced: several times what a page of line art has at 600 dots per inch.
+pub const MOST_CORNERS: usize = 4_000_000;
+
+/// The dark part of an image has an outline of more than [`MOST_CORNERS`] corners.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TooDetailed;
+
+impl fmt::Display for TooDetailed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the outline of the picture's dark part has more than four million corners")
+    }
+}
+
+impl std::error::Error for TooDetailed {}
+
 /// The part of an image whose brightness is below a threshold, with the image fitted into a box as large as can be and
 /// in its middle.
-#[must_use]
-pub fn mask(image: &Image, threshold: f64, fit: Rect) -> Region {
+///
+/// # Errors
+/// Where its outline has too many corners.
+pub fn mask(image: &Image, threshold: f64, fit: Rect) -> Result<Region, TooDetailed> {
     let place = contained(f64::from(image.width), f64::from(image.height), fit);
-    let traced = Tracer { image, threshold, place }.rings();
+    let traced = Tracer { image, threshold, place }.rings()?;
     // Samples are traced as far as one beyond the edge, so that the outline meets the image's edge squarely.
-    Region::from_rings(traced, FillRule::NonZero).intersection(&Region::rect(place))
+    Ok(Region::from_rings(traced, FillRule::NonZero).intersection(&Region::rect(place)))
 }
 
 struct Tracer<'a> {
@@ -45,11 +64,11 @@ impl Tracer<'_> {
         self.image.sample(inner(column, self.image.width), inner(row, self.image.height)) - self.threshold
     }
 
-    fn rings(&self) -> Vec<Vec<Point>> {
+    fn rings(&self) -> Result<Vec<Vec<Point>>, TooDetailed> {
         if self.image.width == 0 || self.image.height == 0 {
-            return Vec::new();
+            return Ok(Vec::new());
         }
-        let mut steps = self.steps();
+        let mut steps = self.steps()?;
         // Every passage is left once and entered once, so the steps sorted by their start lead round the rings.
         steps.sort_unstable();
         let mut is_done = vec![false; steps.len()];
@@ -70,11 +89,11 @@ impl Tracer<'_> {
                 rings.push(ring);
             }
         }
-        rings
+        Ok(rings)
     }
 
     /// The steps from passage to passage, the dark part to the right on the page.
-    fn steps(&self) -> Vec<(Passage, Passage)> {
+    fn steps(&self) -> Result<Vec<(Passage, Passage)>, TooDetailed> {
         let (columns, rows) = self.extent();
         let mut steps = Vec::new();
         for row in 0..rows - 1 {
@@ -104,8 +123,11 @@ impl Tracer<'_> {
                     (false, true, false, true) => steps.extend([(right, top), (left, bottom)]),
                 }
             }
+            if steps.len() > MOST_CORNERS {
+                return Err(TooDetailed);
+            }
         }
-        steps
+        Ok(steps)
     }
 
     /// Where on the page a passage lies.

@@ -20,7 +20,7 @@ use crate::geom::{Length, Point, Rect};
 use crate::region::Region;
 
 pub use image::{Channel, Image, ImageError};
-pub use mask::mask;
+pub use mask::{MOST_CORNERS, TooDetailed, mask};
 pub use noise::Noise;
 
 /// A value at every point of the page. Cheap to clone.

@@ -212,17 +212,29 @@ fn masks_are_the_dark_part() {
         samples[row * 6 + column] = 0.0;
     }
     let image = Image { width: 6, height: 6, samples };
-    let region = mask(&image, 0.5, rect(0.0, 0.0, 6.0, 6.0));
+    let region = mask(&image, 0.5, rect(0.0, 0.0, 6.0, 6.0)).unwrap();
     assert_eq!(region.polygons().len(), 1);
     assert_eq!(region.polygons()[0].holes.len(), 1);
     assert_eq!(region.bounds(), rect(0.0, 0.0, 3.0, 3.0));
     assert!(region.contains(p(0.01, 0.01)) && !region.contains(p(1.5, 1.5)));
     // Where the way from dark to bright is cut depends on the threshold.
     let edge = Image { width: 2, height: 1, samples: vec![0.0, 1.0] };
-    let dark = |threshold: f64| mask(&edge, threshold, rect(0.0, 0.0, 20.0, 10.0)).bounds();
+    let dark = |threshold: f64| mask(&edge, threshold, rect(0.0, 0.0, 20.0, 10.0)).unwrap().bounds();
     assert!((dark(0.25).max.x - 7.5).abs() < 1e-6 && (dark(0.75).max.x - 12.5).abs() < 1e-6);
     assert_eq!(dark(2.0), rect(0.0, 0.0, 20.0, 10.0));
     assert_eq!(dark(0.0), Rect::EMPTY);
+}
+
+#[test]
+fn masks_of_noise_are_refused() {
+    // Every second pixel dark, in both ways: four corners round each.
+    let checked = |width: u32, height: u32| {
+        let dark = |i: u32| if (i % width + i / width) % 2 == 0 { 0.0 } else { 1.0 };
+        let image = Image { width, height, samples: (0..width * height).map(dark).collect() };
+        mask(&image, 0.5, rect(0.0, 0.0, 60.0, 60.0)).map(|region| region.polygons().len())
+    };
+    assert_eq!(checked(40, 40), Ok(800));
+    assert_eq!(checked(1500, 1500), Err(TooDetailed));
 }
 
 /// Any field, with operators that may overflow and divide by zero.
@@ -281,7 +293,7 @@ proptest! {
     fn masks_agree_with_the_image(samples in prop::collection::vec(0.0..1.0f32, 24), threshold in 0.1..0.9f64) {
         let image = Image { width: 6, height: 4, samples };
         let place = rect(0.0, 0.0, 12.0, 8.0);
-        let region = mask(&image, threshold, place);
+        let region = mask(&image, threshold, place).unwrap();
         for row in 0..4 {
             for column in 0..6 {
                 let sample = image.sample(column, row);

@@ -14,6 +14,9 @@ use super::call::Call;
 use super::modules::{self, ROOT_HINT};
 use super::value::Value;
 
+/// What helps where outlines cross too often.
+pub(super) const SIMPLIFY: &str = "simplify the outline, or split it into parts";
+
 /// The bytes of the file that the argument `file` names, with its path from the root.
 fn read(call: &mut Call<'_, '_, '_>) -> Option<(String, Arc<[u8]>)> {
     let Some(Value::String(text)) = call.value("file") else { return None };
@@ -133,6 +136,9 @@ fn refuse(call: &mut Call<'_, '_, '_>, path: &str, error: &SvgError) {
             let message = format!("nothing is filled in what is asked for of `{path}`");
             Diagnostic::error(Code::SvgId, call.span_of(argument), message)
                 .hint("regions are outlines of what is filled")
+        }
+        SvgError::TooTangled => {
+            Diagnostic::error(Code::Limit, call.span_of("file"), format!("`{path}`: {error}")).hint(SIMPLIFY)
         }
         SvgError::Unreadable(_)
         | SvgError::Compressed

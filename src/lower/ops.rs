@@ -2,11 +2,12 @@
 
 use crate::diag::{Code, Diagnostic};
 use crate::field::{Field, Function, Node, Operator};
-use crate::region::Region;
+use crate::region::Operation;
 use crate::span::Span;
 use crate::syntax::ast::{BinaryOp, UnaryOp};
 
 use super::cx::Cx;
+use super::files::SIMPLIFY;
 use super::value::{FieldUnit, Kind, TypedField, Value};
 
 /// An operand that can be reckoned with.
@@ -186,11 +187,18 @@ fn regions(cx: &mut Cx<'_, '_>, op: BinaryOp, a: Value, b: Value, span: Span) ->
     if cx.is_dead() {
         return Value::Unknown(Some(Kind::Region));
     }
-    Value::Region(match op {
-        BinaryOp::Add => Region::union(left, right),
-        BinaryOp::Subtract => Region::difference(left, right),
-        _ => Region::intersection(left, right),
-    })
+    let operation = match op {
+        BinaryOp::Add => Operation::Union,
+        BinaryOp::Subtract => Operation::Difference,
+        _ => Operation::Intersection,
+    };
+    match left.try_combined(right, operation) {
+        Ok(region) => Value::Region(region),
+        Err(tangled) => {
+            cx.report_value(Diagnostic::error(Code::Limit, span, tangled.to_string()).hint(SIMPLIFY));
+            Value::Unknown(Some(Kind::Region))
+        }
+    }
 }
 
 fn arithmetic(cx: &mut Cx<'_, '_>, op: BinaryOp, a: Value, b: Value, (b_span, span): (Span, Span)) -> Value {

@@ -11,6 +11,7 @@ mod nearest;
 mod overlay;
 pub mod path;
 pub mod svg;
+mod tangle;
 #[cfg(test)]
 mod tests;
 
@@ -21,10 +22,11 @@ use serde::{Serialize, Serializer};
 use crate::geom::{Angle, Length, Point, Polygon, Rect, Vec2, ring_bounds};
 use index::Index;
 use nearest::Nearest;
-use overlay::Operation;
 
 pub use curve::Subpath;
+pub use overlay::Operation;
 pub use path::{PathError, PathProblem};
+pub use tangle::Tangled;
 
 /// The farthest that the lines which stand for a curve may lie from it.
 pub const FLATTENING: Length = Length::mm(0.005);
@@ -82,13 +84,24 @@ impl Region {
     }
 
     /// A polygon, which may cross itself: what it runs round is inside, in whatever sense.
-    #[must_use]
-    pub fn polygon(corners: &[Point]) -> Self {
-        Self::from_rings(vec![corners.to_vec()], FillRule::NonZero)
+    ///
+    /// # Errors
+    /// Where it crosses itself too often.
+    pub fn polygon(corners: &[Point]) -> Result<Self, Tangled> {
+        Self::try_from_rings(vec![corners.to_vec()], FillRule::NonZero)
+    }
+
+    /// As [`Region::from_rings`], for rings that come from outside.
+    ///
+    /// # Errors
+    /// Where they cross too often.
+    pub fn try_from_rings(rings: Vec<Vec<Point>>, rule: FillRule) -> Result<Self, Tangled> {
+        overlay::check(&rings)?;
+        Ok(Self::from_rings(rings, rule))
     }
 
     /// What rings enclose; they may cross themselves and each other. Rings with a coordinate that is not finite are
-    /// left out, and so are areas below a square of a thousandth of a millimetre.
+    /// left out, and so are areas below a square of a thousandth of a millimetre. Time and memory grow with the crossings.
     #[must_use]
     pub fn from_rings(rings: Vec<Vec<Point>>, rule: FillRule) -> Self {
         Self::from_resolved(overlay::resolve(&rings, rule))
@@ -133,6 +146,21 @@ impl Region {
         self.combined(other, Operation::Intersection)
     }
 
+    /// As [`Region::union`], [`Region::difference`] or [`Region::intersection`], for outlines that come from outside.
+    ///
+    /// # Errors
+    /// Where the outlines cross too often.
+    pub fn try_combined(&self, other: &Self, operation: Operation) -> Result<Self, Tangled> {
+        if self.bounds().touches(&other.bounds()) {
+            overlay::check(self.polygons().iter().chain(other.polygons()).flat_map(Polygon::rings))?;
+        }
+        Ok(match operation {
+            Operation::Union => self.union(other),
+            Operation::Difference => self.difference(other),
+            Operation::Intersection => self.intersection(other),
+        })
+    }
+
     fn combined(&self, other: &Self, operation: Operation) -> Self {
         Self::from_resolved(overlay::combine(self.polygons(), other.polygons(), operation))
     }
@@ -146,6 +174,15 @@ impl Region {
             return self.clone();
         }
         Self::from_resolved(overlay::grow(self.polygons(), -distance))
+    }
+
+    /// As [`Region::inset`], for outlines that come from outside.
+    ///
+    /// # Errors
+    /// Where the outline is so detailed that, moved, it crosses itself too often.
+    pub fn try_inset(&self, distance: Length) -> Result<Self, Tangled> {
+        overlay::check_growth(self.polygons(), -distance)?;
+        Ok(self.inset(distance))
     }
 
     /// Moved.

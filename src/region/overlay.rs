@@ -13,8 +13,9 @@ use i_overlay::mesh::int::arc::ArcOptions;
 use i_overlay::mesh::int::outline::offset::IntOutlineOffset;
 use i_overlay::mesh::int::style::{IntLineJoin, IntOutlineStyle};
 
+use super::tangle::{self, Tangled};
 use super::{FLATTENING, FillRule};
-use crate::geom::{Length, Point, Polygon};
+use crate::geom::{Angle, Length, Point, Polygon, Vec2};
 
 /// The distance of neighbouring coordinates in millimetres, 2^-24 (0.06 nanometres).
 const GRID: f64 = 1.0 / STEPS;
@@ -28,15 +29,21 @@ const FARTHEST: f64 = 1e8;
 /// Areas and holes below this many square millimetres are dropped: a square of a thousandth of a millimetre.
 const SLIVER: f64 = 1e-6;
 
+/// Most pieces of the arcs of an outline that grows.
+const MOST_ARC_PIECES: f64 = 4e6;
+
 /// How two areas are combined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Operation {
+pub enum Operation {
+    /// What either holds.
     Union,
+    /// What the first holds and the second does not.
     Difference,
+    /// What both hold.
     Intersection,
 }
 
-type Ring = Vec<IntPoint<i64>>;
+pub(super) type Ring = Vec<IntPoint<i64>>;
 
 /// The area that rings enclose. Rings with a coordinate that is not finite are left out.
 pub(super) fn resolve<'a>(rings: impl IntoIterator<Item = &'a Vec<Point>>, rule: FillRule) -> Vec<Polygon> {
@@ -47,6 +54,12 @@ pub(super) fn resolve<'a>(rings: impl IntoIterator<Item = &'a Vec<Point>>, rule:
         FillRule::EvenOdd => Rule::EvenOdd,
     };
     to_polygons(overlay.overlay(OverlayRule::Subject, rule))
+}
+
+/// # Errors
+/// Where resolving the rings would meet too many crossings.
+pub(super) fn check<'a>(rings: impl IntoIterator<Item = &'a Vec<Point>>) -> Result<(), Tangled> {
+    tangle::check(&to_grid(rings))
 }
 
 /// Combines two areas.
@@ -66,14 +79,53 @@ pub(super) fn combine(a: &[Polygon], b: &[Polygon], operation: Operation) -> Vec
 pub(super) fn grow(polygons: &[Polygon], by: Length) -> Vec<Polygon> {
     let rings = to_grid(polygons.iter().flat_map(Polygon::rings));
     let by = by.to_mm().clamp(-FARTHEST, FARTHEST);
-    // The sagitta of an arc of angle s and radius r is r (1 - cos(s / 2)).
-    let share = (FLATTENING.to_mm() / by.abs()).min(1.0);
-    let step = 2.0 * libm::acos(1.0 - share);
-    let max_step = BinaryAngle::from_radians(step.min(std::f64::consts::FRAC_PI_4)).unwrap_or(ArcOptions::MIN_STEP);
+    let max_step = BinaryAngle::from_radians(arc_step(by)).unwrap_or(ArcOptions::MIN_STEP);
     let style = IntOutlineStyle::<i64>::new((by * STEPS).round() as i64)
         .line_join(IntLineJoin::Round(ArcOptions { max_step, ..ArcOptions::default() }));
     // The error is never returned by construction: it belongs to a check of ranges that FARTHEST makes needless.
     to_polygons(rings.outline_custom(&style, options()).unwrap_or_default())
+}
+
+/// The outline that [`grow`] resolves, with arcs in eighths of a circle, which are enough to see where it crosses.
+///
+/// # Errors
+/// Where it would meet too many crossings, or consist of too many pieces.
+pub(super) fn check_growth(polygons: &[Polygon], by: Length) -> Result<(), Tangled> {
+    let by = by.to_mm().clamp(-FARTHEST, FARTHEST);
+    let step = arc_step(by);
+    let mut turns = 0.0;
+    let mut moved = Vec::new();
+    for ring in polygons.iter().flat_map(Polygon::rings) {
+        let mut outline = Vec::with_capacity(ring.len() * 2);
+        for (i, &b) in ring.iter().enumerate() {
+            let a = ring[(i + ring.len() - 1) % ring.len()];
+            let c = ring[(i + 1) % ring.len()];
+            let (before, after) = (b - a, c - b);
+            // Outlines run clockwise on the page, so that outside lies to the left.
+            let outwards = |v: Vec2| Vec2::new(v.y, -v.x) * (by / v.length_squared().sqrt());
+            let (from, to) = (outwards(before), outwards(after));
+            outline.push(b + from);
+            let turn = libm::atan2(before.cross(after), before.dot(after));
+            if turn * by > 0.0 {
+                turns += turn.abs();
+                let pieces = (turn.abs() / std::f64::consts::FRAC_PI_4).ceil();
+                for k in 1..pieces as usize {
+                    let (sin, cos) = Angle::radians(turn * k as f64 / pieces).sin_cos();
+                    outline.push(b + Vec2::new(from.x * cos - from.y * sin, from.x * sin + from.y * cos));
+                }
+            }
+            outline.push(b + to);
+        }
+        moved.push(outline);
+    }
+    if turns / step > MOST_ARC_PIECES { Err(Tangled) } else { check(&moved) }
+}
+
+/// The angle of the pieces that an arc of a radius is made of.
+fn arc_step(radius: f64) -> f64 {
+    // The sagitta of an arc of angle s and radius r is r (1 - cos(s / 2)).
+    let share = (FLATTENING.to_mm() / radius.abs()).min(1.0);
+    (2.0 * libm::acos(1.0 - share)).min(std::f64::consts::FRAC_PI_4)
 }
 
 fn options() -> IntOverlayOptions<u128> {

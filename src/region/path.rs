@@ -32,6 +32,8 @@ pub enum PathProblem {
     Unfinished,
     /// A coordinate is too large to be a number.
     TooLarge,
+    /// The lines cross too often.
+    TooTangled,
 }
 
 impl fmt::Display for PathError {
@@ -43,6 +45,7 @@ impl fmt::Display for PathError {
             PathProblem::BadNumber => "here the path needs a number",
             PathProblem::Unfinished => "the path ends in the middle of a command",
             PathProblem::TooLarge => "a coordinate of the path is too large",
+            PathProblem::TooTangled => "the path crosses itself more than a million times",
         })
     }
 }
@@ -78,10 +81,11 @@ impl Region {
     /// What path data runs round, by the non-zero rule; open lines are closed. One unit of the data is `unit` long.
     ///
     /// # Errors
-    /// Says where the data is wrong.
+    /// Says where the data is wrong; or that the lines cross too often.
     pub fn path(data: &str, unit: Length) -> Result<Self, PathError> {
         let rings = subpaths(data, unit)?.into_iter().map(|subpath| subpath.points).collect();
-        Ok(Self::from_rings(rings, FillRule::NonZero))
+        Self::try_from_rings(rings, FillRule::NonZero)
+            .map_err(|_| PathError { offset: 0, problem: PathProblem::TooTangled })
     }
 }
 

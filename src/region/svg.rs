@@ -15,7 +15,7 @@ use std::fmt;
 use std::ops::Range;
 
 use super::curve::Pen;
-use super::{FillRule, Region, contained, overlay};
+use super::{FillRule, Operation, Region, Tangled, contained, overlay};
 use crate::geom::{Length, Point, Rect};
 
 /// Points lie on multiples of this many millimetres.
@@ -119,6 +119,8 @@ pub enum SvgError {
         /// The classes that there are, in order.
         known: Vec<String>,
     },
+    /// The outlines cross too often.
+    TooTangled,
     /// What was asked for is there, but nothing in it is filled.
     NotFilled,
 }
@@ -131,6 +133,7 @@ impl fmt::Display for SvgError {
             Self::TooDeep { most } => write!(f, "the SVG file nests elements more than {most} deep"),
             Self::TooLarge => f.write_str("the SVG file has too many elements, or its `use` elements repeat too much"),
             Self::NoSize => f.write_str("the page of the SVG file has no size"),
+            Self::TooTangled => f.write_str("the outlines in the SVG file cross more than a million times"),
             Self::NoSuchId { id, .. } => write!(f, "no element of the SVG file has the id `{id}`"),
             Self::NoSuchLayer { layer, .. } => write!(f, "no layer of the SVG file is called `{layer}`"),
             Self::NoSuchClass { class, .. } => write!(f, "no element of the SVG file has the class `{class}`"),
@@ -140,6 +143,12 @@ impl fmt::Display for SvgError {
 }
 
 impl std::error::Error for SvgError {}
+
+impl From<Tangled> for SvgError {
+    fn from(_: Tangled) -> Self {
+        Self::TooTangled
+    }
+}
 
 /// Reads an SVG file.
 ///
@@ -164,7 +173,7 @@ impl SvgFile {
     /// middle, so that several parts of one file stay in register.
     ///
     /// # Errors
-    /// Where there is no such part, or nothing in it is filled.
+    /// Where there is no such part, nothing in it is filled, or outlines cross too often.
     pub fn region(&self, selection: Selection<'_>, fit: Option<Rect>) -> Result<Region, SvgError> {
         let to_mm = Length::MM_PER_INCH / PIXELS_PER_INCH;
         let page = Rect::new(Point::new(0.0, 0.0), Point::new(self.size[0] * to_mm, self.size[1] * to_mm));
@@ -175,14 +184,14 @@ impl SvgFile {
         for shape in self.selected(selection)?.into_iter().filter_map(|i| self.shapes.get(i)) {
             // Each by its own rule; of what comes out, outlines run one way and holes the other, so that all of them
             // together are their union.
-            rings.entry(shape.clip).or_default().extend(shape.rings(&place));
+            rings.entry(shape.clip).or_default().extend(shape.rings(&place)?);
         }
         let mut clips = BTreeMap::new();
         let mut seen = Vec::new();
         for (clip, rings) in rings {
-            let region = Region::from_rings(rings, FillRule::NonZero);
+            let region = Region::try_from_rings(rings, FillRule::NonZero)?;
             seen.push(match clip {
-                Some(clip) => region.intersection(&self.clip(clip, &place, &mut clips)),
+                Some(clip) => region.try_combined(&self.clip(clip, &place, &mut clips)?, Operation::Intersection)?,
                 None => region,
             });
         }
@@ -190,7 +199,7 @@ impl SvgFile {
             [region] => region.clone(),
             regions => {
                 let rings = regions.iter().flat_map(Region::polygons).flat_map(|polygon| polygon.rings().cloned());
-                Region::from_rings(rings.collect(), FillRule::NonZero)
+                Region::try_from_rings(rings.collect(), FillRule::NonZero)?
             }
         };
         if region.is_empty() { Err(SvgError::NotFilled) } else { Ok(region) }
@@ -218,7 +227,7 @@ impl SvgFile {
     }
 
     /// The area of a clip path and all those outside it. The ones found are kept in `found`.
-    fn clip(&self, clip: usize, place: &Placement, found: &mut BTreeMap<usize, Region>) -> Region {
+    fn clip(&self, clip: usize, place: &Placement, found: &mut BTreeMap<usize, Region>) -> Result<Region, Tangled> {
         // From this one outwards as far as is not known yet, and then back.
         let mut chain = Vec::new();
         let mut next = Some(clip);
@@ -229,13 +238,19 @@ impl SvgFile {
         let mut outer = next.and_then(|at| found.get(&at).cloned());
         while let Some(at) = chain.pop() {
             let shapes = self.clips.get(at).map_or(&[][..], |clip| &clip.shapes);
-            let rings = shapes.iter().flat_map(|shape| shape.rings(place)).collect();
-            let own = Region::from_rings(rings, FillRule::NonZero);
-            let region = outer.map_or(own.clone(), |outer| own.intersection(&outer));
+            let mut rings = Vec::new();
+            for shape in shapes {
+                rings.extend(shape.rings(place)?);
+            }
+            let own = Region::try_from_rings(rings, FillRule::NonZero)?;
+            let region = match outer {
+                Some(outer) => own.try_combined(&outer, Operation::Intersection)?,
+                None => own,
+            };
             found.insert(at, region.clone());
             outer = Some(region);
         }
-        outer.unwrap_or_else(Region::empty)
+        Ok(outer.unwrap_or_else(Region::empty))
     }
 }
 
@@ -248,7 +263,7 @@ struct Placement {
 
 impl Shape {
     /// Its area on the page as rings that do not cross.
-    fn rings(&self, place: &Placement) -> Vec<Vec<Point>> {
+    fn rings(&self, place: &Placement) -> Result<Vec<Vec<Point>>, Tangled> {
         let at = |p: Point| place.origin + (p - Point::new(0.0, 0.0)) * place.scale;
         let mut pen = Pen::default();
         for step in &self.steps {
@@ -266,9 +281,10 @@ impl Shape {
             .into_iter()
             .map(|subpath| subpath.points.into_iter().map(|p| Point::new(snap(p.x), snap(p.y))).collect())
             .collect();
-        overlay::resolve(&rings, self.rule)
+        overlay::check(&rings)?;
+        Ok(overlay::resolve(&rings, self.rule)
             .into_iter()
             .flat_map(|polygon| std::iter::once(polygon.outer).chain(polygon.holes))
-            .collect()
+            .collect())
     }
 }

@@ -1,7 +1,7 @@
 //! Regions.
 
 use crate::geom::{Angle, Length, Point, Vec2};
-use crate::region::Region;
+use crate::region::{PathProblem, Region, Tangled};
 
 use super::super::call::{Call, Signature, later, optional, required};
 use super::super::convert::{Slot, coerce};
@@ -81,7 +81,15 @@ pub(super) const SIGNATURES: &[Signature] = &[
         params: &[required("region", REGION), required("distance", LENGTH)],
         build: |call| {
             let distance = Length::mm(call.get("distance")?.value.as_length()?);
-            let inset = call.region("region")?.inset(distance);
+            let inset = match call.region("region")?.try_inset(distance) {
+                Ok(inset) => inset,
+                Err(Tangled) => {
+                    let message = "the outline has too many corners to be moved so far";
+                    let diagnostic = Diagnostic::error(Code::Limit, call.span_of("region"), message);
+                    call.cx.report_value(diagnostic.hint("simplify the outline, or move it less far"));
+                    return None;
+                }
+            };
             if inset.is_empty() {
                 let message = format!("nothing is left of the region {}mm inside its outline", distance.to_mm());
                 let span = call.span;
@@ -175,7 +183,14 @@ fn polygon(call: &mut Call<'_, '_, '_>) -> Option<Value> {
     for member in members.iter() {
         corners.push(coerce(call.cx, member.clone(), Slot::of(Kind::Point), span).as_point()?);
     }
-    not_empty(call, "the polygon has no area", |_| Some(Region::polygon(&corners)))
+    not_empty(call, "the polygon has no area", |call| match Region::polygon(&corners) {
+        Ok(region) => Some(region),
+        Err(tangled) => {
+            let diagnostic = Diagnostic::error(Code::Limit, span, tangled.to_string());
+            call.cx.report_value(diagnostic.hint(files::SIMPLIFY));
+            None
+        }
+    })
 }
 
 fn path(call: &mut Call<'_, '_, '_>) -> Option<Value> {
@@ -183,6 +198,11 @@ fn path(call: &mut Call<'_, '_, '_>) -> Option<Value> {
     let unit = call.cx.unit_length();
     not_empty(call, "the path encloses nothing", |call| match Region::path(&data.value, unit) {
         Ok(region) => Some(region),
+        Err(error) if error.problem == PathProblem::TooTangled => {
+            let diagnostic = Diagnostic::error(Code::Limit, call.span_of("data"), error.to_string());
+            call.cx.report_value(diagnostic.hint(files::SIMPLIFY));
+            None
+        }
         Err(error) => {
             let whole = call.span_of("data");
             let mut span = whole;
@@ -210,7 +230,14 @@ fn mask(call: &mut Call<'_, '_, '_>) -> Option<Value> {
         (false, None) => return None,
     };
     let image = files::image(call, "luminance")?;
-    not_empty(call, "no part of the image is darker than the threshold", |_| {
-        Some(crate::field::mask(&image, threshold, fit))
+    not_empty(call, "no part of the image is darker than the threshold", |call| {
+        match crate::field::mask(&image, threshold, fit) {
+            Ok(region) => Some(region),
+            Err(error) => {
+                let diagnostic = Diagnostic::error(Code::Limit, call.span_of("file"), error.to_string());
+                call.cx.report_value(diagnostic.hint("blur the picture or scale it down before it is traced"));
+                None
+            }
+        }
     })
 }

@@ -34,7 +34,7 @@ pub(super) fn draw(job: &Job<'_>, layer: &Layer<'_>, covers: &[u32], out: &mut B
         }
         return;
     }
-    let mut seen = Region::polygon(layer.area);
+    let mut seen = Region::from_rings(vec![layer.area.to_vec()], FillRule::NonZero);
     if !hidden.is_empty() {
         seen = seen.difference(&Region::from_rings(hidden, FillRule::NonZero));
     }

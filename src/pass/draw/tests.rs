@@ -101,7 +101,7 @@ fn lens(canvas: &Canvas) -> Region {
     let disc = Region::circle(Point::new(width.to_mm() - 2.2, height / 2.0), Length::mm(height * 0.45));
     let hole =
         [(width.to_mm() - 3.0, height / 2.0), (width.to_mm() - 1.0, height * 0.4), (width.to_mm() - 1.4, height * 0.6)];
-    disc.difference(&Region::polygon(&hole.map(|(x, y)| Point::new(x, y))))
+    disc.difference(&Region::polygon(&hole.map(|(x, y)| Point::new(x, y))).unwrap())
 }
 
 /// All stages of a paint.
