@@ -160,15 +160,18 @@ fn draw(
     let mut whole = true;
     for (setting, item) in &items {
         let drawn = match item {
-            Item::Outline(outline) => assembly.outline(outline, setting),
+            Item::Outline(outline) => assembly.outline(outline, setting).map(|()| None),
             Item::Paint(paint) => PaintStages::new(paint, canvas, limits, observer, diagnostics).and_then(|stages| {
                 observer.begin(Step::Draw, &paint.name);
                 assembly.paint(paint, setting, &stages.borrow())
             }),
         };
-        if let Err(diagnostic) = drawn {
-            diagnostics.push(diagnostic);
-            whole = false;
+        match drawn {
+            Ok(warning) => diagnostics.extend(warning),
+            Err(diagnostic) => {
+                diagnostics.push(diagnostic);
+                whole = false;
+            }
         }
     }
     whole.then(|| assembly.finish())

@@ -145,8 +145,10 @@ codes! {
          scene and silences the warning."
     Checkerboard "checkerboard" "A checkerboard needs a grid"
         "`checkerboard()` alternates along rows and columns, which only `grid(...)` has."
-    NoTiles "no-tiles" "A paint has no tiles"
-        "The placement put no tile on the region: it may be smaller than the distance between sites."
+    NoTiles "no-tiles" "A paint draws nothing"
+        "The placement put no tile on the region, which may be smaller than the distance between sites; or there are \
+         tiles, but nothing of their fill is left: strokes are shorter than `shortest`, dots do not fit, or later tiles \
+         hide them."
     Metadata "metadata" "The picture holds no scene"
         "A picture can be built again when it was written by this program with `--embed text` (the default) or \
          `--embed all`."

@@ -1,12 +1,12 @@
 //! From drawn paints and outlines to the whole drawing, from the bottom up.
 
-use crate::diag::Diagnostic;
+use crate::diag::{Code, Diagnostic, grouped};
 use crate::drawing::{Drawing, Layer, Page, Strokes};
 use crate::pass::cut;
 use crate::scene::{Canvas, Cap, Colour, Draw, Limits, Outline, Over, Paint, Scene};
 use crate::span::Span;
 
-use super::budget::Exceeded;
+use super::budget::{Budget, Exceeded};
 use super::knockout::Stencil;
 use super::{Stages, draw};
 
@@ -52,36 +52,59 @@ fn collect<'a>(draws: &'a [Draw], setting: &Setting, items: &mut Vec<(Setting, I
     }
 }
 
+/// The warning that none of a paint's tiles has a mark.
+fn nothing_drawn(paint: &Paint, tiles: usize) -> Diagnostic {
+    let tiles = if tiles == 1 { "1 tile".to_owned() } else { format!("{} tiles", grouped(tiles as u64)) };
+    Diagnostic::warning(Code::NoTiles, paint.span, format!("`{}` has {tiles}, but draws nothing", paint.name))
+        .hint("strokes below `shortest`, dots that do not fit and all that lies under later tiles is left out")
+}
+
 /// A drawing that is being put together.
 pub struct Assembly<'a> {
     canvas: &'a Canvas,
     limits: &'a Limits,
     layers: Vec<Layer>,
+    /// Marks in all layers.
+    marks: u64,
 }
 
 impl<'a> Assembly<'a> {
     /// An empty sheet.
     #[must_use]
     pub fn new(canvas: &'a Canvas, limits: &'a Limits) -> Self {
-        Self { canvas, limits, layers: Vec::new() }
+        Self { canvas, limits, layers: Vec::new(), marks: 0 }
     }
 
     /// Draws a paint on top of what is there, and first removes what lies under its tiles if it knocks out.
     ///
+    /// A warning comes back where the paint has tiles but draws nothing.
+    ///
     /// # Errors
     /// If the drawing comes to have more marks than the limit allows.
-    pub fn paint(&mut self, paint: &Paint, setting: &Setting, stages: &Stages<'_>) -> Result<(), Diagnostic> {
+    pub fn paint(
+        &mut self,
+        paint: &Paint,
+        setting: &Setting,
+        stages: &Stages<'_>,
+    ) -> Result<Option<Diagnostic>, Diagnostic> {
         let layers = draw(paint, self.canvas, setting, stages, self.limits)?;
         match paint.tone.over {
             Over::Print => {}
             Over::Knockout => {
                 let visible = cut::visible(paint, self.canvas);
                 let stencil = Stencil::new(paint, &visible, stages.sites, stages.tiles);
+                Budget::new(self.limits)
+                    .work(stencil.cost(&self.layers))
+                    .map_err(|exceeded| exceeded.diagnostic(self.limits, paint.span))?;
                 self.layers.iter_mut().for_each(|layer| stencil.cut(layer));
                 self.layers.retain(|layer| layer.marks() > 0);
+                self.marks = self.layers.iter().map(Layer::marks).sum();
             }
         }
-        self.add(layers, paint.span)
+        let tiles = (0..stages.tiles.len()).filter(|&tile| stages.tiles.is_drawn(tile)).count();
+        let warning = (layers.is_empty() && tiles > 0).then(|| nothing_drawn(paint, tiles));
+        self.add(layers, paint.span)?;
+        Ok(warning)
     }
 
     /// Draws an outline on top of what is there: every ring as one closed stroke.
@@ -103,9 +126,10 @@ impl<'a> Assembly<'a> {
     }
 
     fn add(&mut self, layers: Vec<Layer>, span: Span) -> Result<(), Diagnostic> {
+        self.marks += layers.iter().map(Layer::marks).sum::<u64>();
         self.layers.extend(layers);
-        if self.layers.iter().map(Layer::marks).sum::<u64>() > self.limits.strokes {
-            return Err(Exceeded.diagnostic(self.limits, span));
+        if self.marks > self.limits.strokes {
+            return Err(Exceeded::Marks.diagnostic(self.limits, span));
         }
         Ok(())
     }

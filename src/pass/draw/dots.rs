@@ -4,7 +4,7 @@ use crate::geom::clip::{TOLERANCE, convex_clearance};
 use crate::geom::{Length, Point};
 use crate::scene::{Blend, Hatch};
 
-use super::budget::Exceeded;
+use super::budget::{BANK, DOT, Exceeded, LINE};
 use super::job::{Job, Layer, Scratch};
 use super::lattice::{Lattice, is_drawn};
 use super::lines::spread;
@@ -40,7 +40,8 @@ pub(super) fn draw(
     let radius = dotting.radius;
     let inner = |(low, high): (f64, f64)| (low + radius, high - radius);
     let lines = lines.over(inner(scratch.area.across()));
-    job.budget.work(lines.count())?;
+    job.budget.work(lines.count() * LINE as f64)?;
+    let cost = DOT + if layer.is_clipped { BANK } else { 0 };
     let mut is_backwards = false;
     for (i, v) in lines.places() {
         if !is_drawn(i, layer.share) {
@@ -48,11 +49,11 @@ pub(super) fn draw(
         }
         let Some(span) = scratch.area.span(v) else { continue };
         let row = along.over(inner(span));
-        job.budget.work(row.count())?;
+        job.budget.work(row.count() * cost as f64)?;
         let start = out.dots.len();
         for (_, u) in row.places() {
             let centre = layer.frame.page(u, v);
-            if is_free(job, layer, centre, radius, &scratch.covers) {
+            if is_free(job, layer, centre, radius, scratch)? {
                 out.dots.push(centre);
             }
         }
@@ -61,7 +62,7 @@ pub(super) fn draw(
         }
         is_backwards = !is_backwards;
         if out.dots.len() > job.budget.limit() {
-            return Err(Exceeded);
+            return Err(Exceeded::Marks);
         }
     }
     Ok(())
@@ -69,44 +70,48 @@ pub(super) fn draw(
 
 /// Where lines lie, and dots along them, so that no dot falls on one of an earlier layer.
 ///
-/// The second layer is moved by half a pitch and half a spacing: its dots could fall on the first layer's only if the
-/// product of two odd numbers were even. In the same way the fourth keeps off the third. These two lie askew to the
-/// first: at the exact pitch, which no diagonal of a tile is a multiple of, and without a dot in the middle.
+/// All layers stand on one lattice of half the pitch and half the spacing, turned with the tile, of which each takes a
+/// quarter: the second the middles of the first one's fields, the third and fourth the middles of their sides. The second
+/// layer makes the dots of the first denser by the square root of two and turns their lattice by 45 degrees, where pitch
+/// and spacing are equal; with the fourth it is square again, at half the distance. Tone grows evenly with every layer.
 fn lattices(job: &Job<'_>, layer: &Layer<'_>, dotting: &Dotting<'_>, scratch: &mut Scratch) -> (Lattice, Lattice) {
     let lines = spread(job, layer, dotting.hatch, scratch);
-    let (across, along) = (scratch.whole.across(), scratch.whole.along());
-    let is_exact = job.paint.tone.shape.is_cell();
-    let exactly = |range: (f64, f64), step: f64| {
-        let middle = if is_exact { 0.0 } else { (range.0 + range.1) / 2.0 };
-        Lattice::cell(range, middle, step)
-    };
-    let pitch = dotting.hatch.pitch.to_mm();
-    let row = if is_exact || layer.number > 2 {
-        exactly(along, dotting.spacing)
+    let along = scratch.whole.along();
+    let row = if job.paint.tone.shape.is_cell() {
+        dotting.along(along)
     } else {
         Lattice::stamp(along, dotting.spacing, 0.5, 1)
     };
     match layer.number {
         0 | 1 => (lines, row),
         2 => (lines.moved(0.5), row.moved(0.5)),
-        3 => (exactly(across, pitch).moved(0.5), row),
-        _ => (exactly(across, pitch).moved(0.5), row.moved(0.5)),
+        3 => (lines, row.moved(0.5)),
+        _ => (lines.moved(0.5), row),
     }
 }
 
 /// Whether a dot lies wholly in the layer's area and in the region and clear of all covers.
-fn is_free(job: &Job<'_>, layer: &Layer<'_>, centre: Point, radius: f64, covers: &[u32]) -> bool {
+fn is_free(
+    job: &Job<'_>,
+    layer: &Layer<'_>,
+    centre: Point,
+    radius: f64,
+    scratch: &mut Scratch,
+) -> Result<bool, Exceeded> {
     let least = radius - TOLERANCE;
     if convex_clearance(layer.area, centre) < least {
-        return false;
+        return Ok(false);
     }
     if job.paint.tone.blend == Blend::Contour && job.paint.tone.k.at(centre) < f64::from(layer.number) - 0.5 {
-        return false;
+        return Ok(false);
     }
-    let is_covered = |&cover: &u32| {
+    let is_cover = |&cover: &u32| {
         let reach = job.nearby.radius(cover as usize) + radius;
         job.sites.points[cover as usize].distance_squared(centre) < reach * reach
             && convex_clearance(job.nearby.outline(cover), centre) > -least
     };
-    !covers.iter().any(is_covered) && (!layer.is_clipped || job.bank.holds_disc(centre, radius))
+    let found = scratch.covers.iter().position(is_cover);
+    let looks = found.map_or(scratch.covers.len(), |at| at + 1);
+    job.budget.look(&mut scratch.looks, looks as u64)?;
+    Ok(found.is_none() && (!layer.is_clipped || job.bank.holds_disc(centre, radius)))
 }

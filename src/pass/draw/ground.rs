@@ -12,7 +12,7 @@ use crate::pass::cut::voronoi::Cells;
 use crate::region::{FillRule, Region};
 use crate::scene::{Canvas, Fill, FillKind, Ground, Hatch};
 
-use super::budget::Exceeded;
+use super::budget::{BANK, DOT, Exceeded, LINE, PROFILE};
 use super::dashes::Dashes;
 use super::dots::Dotting;
 use super::edge::Contact;
@@ -54,6 +54,7 @@ fn nearest(job: &Job<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
         let site = job.sites.points[tile];
         let reach = cell.iter().map(|&p| p.distance_squared(site)).fold(0.0, f64::max).sqrt();
         scratch.covers.clear();
+        job.budget.look(&mut scratch.looks, job.nearby.candidates(site, reach))?;
         job.nearby.near(site, reach, |other| scratch.covers.push(other));
         job.draw_layers(&Piece { tile, beyond: Some(&cell), is_clipped: contact == Contact::Crossing }, scratch, out)
     })
@@ -97,9 +98,9 @@ impl Plane<'_> {
         draw: impl Fn(&mut Scratch, &[(i64, f64)], &mut Batch) -> Result<(), Exceeded> + Sync,
     ) -> Result<Vec<Vec<Batch>>, Exceeded> {
         let lattice = Lattice::cell(self.region.across(), 0.0, pitch.to_mm());
-        self.job.budget.work(lattice.count())?;
+        self.job.budget.work(lattice.count() * (LINE + BANK) as f64)?;
         if lattice.count() > self.job.budget.limit() as f64 {
-            return Err(Exceeded);
+            return Err(Exceeded::Marks);
         }
         let lines: Vec<(i64, f64)> = lattice.places().collect();
         lines
@@ -107,7 +108,9 @@ impl Plane<'_> {
             .map(|band| {
                 let mut batches = self.job.palette.batches();
                 let batch = &mut batches[self.job.palette.ground_slot()];
-                draw(&mut Scratch::default(), band, batch)?;
+                let mut scratch = Scratch::default();
+                draw(&mut scratch, band, batch)?;
+                self.job.budget.work(scratch.looks as f64)?;
                 batch.end_bundle();
                 self.job.budget.mark(batch.len())?;
                 Ok(batches)
@@ -119,8 +122,10 @@ impl Plane<'_> {
         let ranges = self.tile_ranges();
         let along = self.region.along();
         self.in_bands(hatch.pitch, |scratch, band, out| {
-            let hidden = self.hidden(band, &ranges, scratch);
-            for (&(number, v), hidden) in band.iter().zip(hidden) {
+            let hidden = self.hidden(band, &ranges, scratch)?;
+            for (&(number, v), mut hidden) in band.iter().zip(hidden) {
+                // From the end to the start, so that what is left lies as one range before each.
+                hidden.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
                 scratch.ranges.reset(along.0, along.1);
                 for (start, end) in hidden {
                     scratch.ranges.subtract(start, end);
@@ -135,13 +140,17 @@ impl Plane<'_> {
 
     fn dots(&self, dotting: &Dotting<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
         let row = dotting.along(self.region.along());
-        self.in_bands(dotting.hatch.pitch, |_, band, out| {
+        let count = row.count() * Lattice::cell(self.region.across(), 0.0, dotting.hatch.pitch.to_mm()).count();
+        if count * (DOT + BANK) as f64 > self.job.budget.most_work() as f64 {
+            return Err(Exceeded::Places { what: "dots of ground", count: count as u64 });
+        }
+        self.in_bands(dotting.hatch.pitch, |scratch, band, out| {
             for &(number, v) in band {
-                self.job.budget.work(row.count())?;
+                self.job.budget.work(row.count() * (DOT + BANK) as f64)?;
                 let start = out.dots.len();
                 for (_, u) in row.places() {
                     let centre = self.frame.page(u, v);
-                    if self.is_free(centre, dotting.radius) {
+                    if self.is_free(centre, dotting.radius, scratch)? {
                         out.dots.push(centre);
                     }
                 }
@@ -149,7 +158,7 @@ impl Plane<'_> {
                     out.dots[start..].reverse();
                 }
                 if out.dots.len() > self.job.budget.limit() {
-                    return Err(Exceeded);
+                    return Err(Exceeded::Marks);
                 }
             }
             Ok(())
@@ -157,15 +166,16 @@ impl Plane<'_> {
     }
 
     /// Whether a dot lies in the region and clear of all tiles.
-    fn is_free(&self, centre: Point, radius: f64) -> bool {
+    fn is_free(&self, centre: Point, radius: f64, scratch: &mut Scratch) -> Result<bool, Exceeded> {
         if !self.job.bank.holds_disc(centre, radius) {
-            return false;
+            return Ok(false);
         }
+        self.job.budget.look(&mut scratch.looks, self.job.nearby.candidates(centre, radius))?;
         let mut is_free = true;
         self.job.nearby.near(centre, radius, |tile| {
             is_free = is_free && convex_clearance(self.job.nearby.outline(tile), centre) <= -radius;
         });
-        is_free
+        Ok(is_free)
     }
 
     /// The drawn tiles with their ranges across the lines.
@@ -183,9 +193,15 @@ impl Plane<'_> {
     }
 
     /// What tiles hide of each line of a band.
-    fn hidden(&self, band: &[(i64, f64)], tiles: &[(u32, (f64, f64))], scratch: &mut Scratch) -> Vec<Vec<(f64, f64)>> {
+    fn hidden(
+        &self,
+        band: &[(i64, f64)],
+        tiles: &[(u32, (f64, f64))],
+        scratch: &mut Scratch,
+    ) -> Result<Vec<Vec<(f64, f64)>>, Exceeded> {
+        self.job.budget.work(tiles.len() as f64)?;
         let mut hidden = vec![Vec::new(); band.len()];
-        let (Some(first), Some(last)) = (band.first(), band.last()) else { return hidden };
+        let (Some(first), Some(last)) = (band.first(), band.last()) else { return Ok(hidden) };
         for &(tile, (low, high)) in tiles {
             if high < first.1 || low > last.1 {
                 continue;
@@ -194,8 +210,10 @@ impl Plane<'_> {
             let start = band.partition_point(|line| line.1 < low);
             for (line, hidden) in band.iter().zip(&mut hidden).skip(start).take_while(|(line, _)| line.1 <= high) {
                 hidden.extend(scratch.area.span(line.1));
+                scratch.looks += 1;
             }
+            self.job.budget.look(&mut scratch.looks, PROFILE)?;
         }
-        hidden
+        Ok(hidden)
     }
 }

@@ -7,7 +7,7 @@ use crate::geom::{Angle, Point, Vec2};
 use crate::scene::{FillKind, Paint, Stack};
 use crate::stage::{Angles, Graph, Sites, Standing, Tiles};
 
-use super::budget::{Budget, Exceeded};
+use super::budget::{Budget, Exceeded, PROFILE};
 use super::edge::{self, Bank};
 use super::nearby::Nearby;
 use super::palette::{Batch, Palette};
@@ -45,6 +45,8 @@ pub(super) struct Scratch {
     /// Other ranges along it.
     pub(super) others: Vec<(f64, f64)>,
     pub(super) edge: edge::Scratch,
+    /// Looks that the budget does not know of as yet.
+    pub(super) looks: u64,
 }
 
 /// One layer of one tile.
@@ -90,9 +92,15 @@ impl Job<'_> {
                     batches.iter_mut().for_each(Batch::end_bundle);
                     self.budget.mark(batches.iter().map(Batch::len).sum::<usize>() - before)?;
                 }
+                self.budget.work(scratch.looks as f64)?;
                 Ok(batches)
             })
             .collect()
+    }
+
+    /// Whether tiles hide parts of each other. Cells lie side by side and hide nothing.
+    pub(super) fn has_covers(&self) -> bool {
+        self.paint.tone.stack == Stack::Cover && !self.paint.tone.shape.is_cell()
     }
 
     /// Draws a tile's own marks.
@@ -101,9 +109,9 @@ impl Job<'_> {
             return Ok(());
         }
         scratch.covers.clear();
-        // Cells lie side by side and hide nothing of each other.
-        if self.paint.tone.stack == Stack::Cover && !self.paint.tone.shape.is_cell() {
+        if self.has_covers() {
             let radius = self.nearby.radius(tile);
+            self.budget.look(&mut scratch.looks, self.nearby.candidates(self.sites.points[tile], radius))?;
             self.nearby.near(self.sites.points[tile], radius, |other| {
                 if other as usize > tile {
                     scratch.covers.push(other);
@@ -128,16 +136,19 @@ impl Job<'_> {
         for number in 1..=(layers.full + u8::from(layers.part > 0.0)).min(4) {
             let at = usize::from(number - 1).min(fills.len() - 1);
             let slot = self.palette.slot(at);
+            // Dots of all layers stand on one lattice.
+            let turn = if matches!(fills[at].kind, FillKind::Dots { .. }) { 1 } else { number };
             let layer = Layer {
                 number,
                 share: if number <= layers.full { 1.0 } else { layers.part },
-                frame: Frame::new(self.sites.points[piece.tile], direction(self.angles.0[piece.tile], number)),
+                frame: Frame::new(self.sites.points[piece.tile], direction(self.angles.0[piece.tile], turn)),
                 outline,
                 area: piece.beyond.unwrap_or(outline),
                 is_continued: piece.beyond.is_some(),
                 is_clipped: piece.is_clipped,
             };
             let batch = &mut out[slot];
+            self.budget.look(&mut scratch.looks, PROFILE * (1 + scratch.covers.len() as u64))?;
             match &fills[at].kind {
                 FillKind::Lines(hatch) => lines::draw(self, &layer, hatch, None, scratch, batch)?,
                 FillKind::Dashes { hatch, dash, gap } => {

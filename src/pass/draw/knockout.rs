@@ -47,6 +47,26 @@ impl<'a> Stencil<'a> {
         Self { tiles, nearby: Nearby::new(sites, tiles), region }
     }
 
+    /// How many looks it takes to cut layers.
+    pub(super) fn cost(&self, layers: &[Layer]) -> f64 {
+        let lines = |strokes: &Strokes| -> u64 {
+            strokes.lines.par_iter().map(|&[a, b]| self.nearby.candidates_along(a, b)).sum::<u64>()
+                + strokes
+                    .polylines
+                    .par_iter()
+                    .flat_map_iter(|polyline| polyline.windows(2))
+                    .map(|pair| self.nearby.candidates_along(pair[0], pair[1]))
+                    .sum::<u64>()
+        };
+        let dots = |dots: &Dots| -> u64 {
+            dots.centres.par_iter().map(|&centre| self.nearby.candidates(centre, dots.radius.to_mm())).sum()
+        };
+        let cost = |layer: &Layer| {
+            layer.strokes.iter().map(lines).sum::<u64>() as f64 + layer.dots.iter().map(dots).sum::<u64>() as f64
+        };
+        layers.iter().map(cost).sum()
+    }
+
     /// Removes what lies under the tiles.
     pub(super) fn cut(&self, layer: &mut Layer) {
         for strokes in &mut layer.strokes {

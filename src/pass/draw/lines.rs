@@ -8,7 +8,7 @@ use crate::geom::Length;
 use crate::geom::clip::{Frame, Profile, TOLERANCE};
 use crate::scene::{Blend, Hatch};
 
-use super::budget::Exceeded;
+use super::budget::{BANK, Exceeded, LINE, SAMPLE};
 use super::dashes::Dashes;
 use super::job::{Job, Layer, Scratch};
 use super::lattice::{Lattice, is_drawn};
@@ -27,7 +27,7 @@ pub(super) fn draw(
     out: &mut Batch,
 ) -> Result<(), Exceeded> {
     let lattice = spread(job, layer, hatch, scratch);
-    job.budget.work(lattice.count())?;
+    job.budget.work(lattice.count() * LINE as f64)?;
     set_shadows(job, layer, scratch);
     let mut is_backwards = false;
     for (i, v) in lattice.places() {
@@ -36,16 +36,20 @@ pub(super) fn draw(
         }
         let Some((start, end)) = scratch.area.span(v) else { continue };
         scratch.ranges.reset(start, end);
+        let mut looks = 0;
         for shadow in &scratch.shadows[..scratch.covers.len()] {
             if scratch.ranges.is_empty() {
                 break;
             }
+            looks += 1;
             if let Some((start, end)) = shadow.span(v) {
                 scratch.ranges.subtract(start, end);
             }
         }
+        job.budget.look(&mut scratch.looks, looks)?;
         contour(job, layer, v, hatch.pitch, scratch)?;
-        if layer.is_clipped {
+        if layer.is_clipped && !scratch.ranges.is_empty() {
+            job.budget.look(&mut scratch.looks, BANK)?;
             job.bank.clip(&layer.frame, v, hatch, &mut scratch.ranges, &mut scratch.edge);
         }
         if scratch.ranges.is_empty() {
@@ -94,7 +98,7 @@ fn contour(job: &Job<'_>, layer: &Layer<'_>, v: f64, pitch: Length, scratch: &mu
     scratch.others.clear();
     for &(start, end) in scratch.ranges.as_slice() {
         let steps = ((end - start) / (pitch.to_mm() / 2.0)).ceil().max(1.0);
-        job.budget.work(steps)?;
+        job.budget.work(steps * SAMPLE as f64)?;
         let at = |step: f64| if step < steps { start + (end - start) * (step / steps) } else { end };
         let mut was_in = is_in(start);
         let mut from = start;
@@ -178,6 +182,6 @@ impl Line<'_> {
             out.lines[start..].reverse();
             out.lines[start..].iter_mut().for_each(|line| line.reverse());
         }
-        if out.lines.len() > job.budget.limit() { Err(Exceeded) } else { Ok(()) }
+        if out.lines.len() > job.budget.limit() { Err(Exceeded::Marks) } else { Ok(()) }
     }
 }

@@ -10,6 +10,7 @@ mod budget;
 mod dashes;
 mod dots;
 mod edge;
+mod forecast;
 mod ground;
 mod job;
 mod knockout;
@@ -66,12 +67,16 @@ pub fn draw(
     let (palette, budget) = (Palette::new(paint, setting.ink), Budget::new(limits));
     let job =
         Job { paint, sites, graph, angles, tiles, bank: &bank, nearby: &nearby, palette: &palette, budget: &budget };
-    let chunks = chunks(&job, canvas).map_err(|exceeded| exceeded.diagnostic(limits, paint.span))?;
+    let chunks = chunks(&job, canvas).map_err(|exceeded| match exceeded {
+        Exceeded::Overlap { .. } => exceeded.diagnostic(limits, paint.tone.place_span).note(paint.span, "painted here"),
+        _ => exceeded.diagnostic(limits, paint.span),
+    })?;
     Ok(palette.layers(&paint.name, &setting.groups, chunks))
 }
 
 /// The ground and then the tiles.
 fn chunks(job: &Job<'_>, canvas: &Canvas) -> Result<Vec<Vec<Batch>>, Exceeded> {
+    forecast::check(job)?;
     let mut chunks = ground::draw(job, canvas)?;
     chunks.extend(job.in_chunks(|scratch, tile, out| job.draw_tile(scratch, tile, out))?);
     Ok(chunks)

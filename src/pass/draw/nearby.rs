@@ -64,6 +64,19 @@ impl Buckets {
         self.row(p.y) * self.columns + self.column(p.x)
     }
 
+    /// How many points [`Self::visit`] would visit.
+    fn count(&self, area: &Rect) -> u64 {
+        if self.listed.is_empty() || !self.bounds.touches(area) {
+            return 0;
+        }
+        let (left, right) = (self.column(area.min.x), self.column(area.max.x));
+        let in_row = |row: usize| {
+            let start = self.starts[row * self.columns + left];
+            u64::from(self.starts[row * self.columns + right + 1] - start)
+        };
+        (self.row(area.min.y)..=self.row(area.max.y)).map(in_row).sum()
+    }
+
     /// Calls `visit` with all points whose cells touch a box.
     fn visit(&self, area: &Rect, mut visit: impl FnMut(u32)) {
         if self.listed.is_empty() || !self.bounds.touches(area) {
@@ -112,6 +125,11 @@ impl<'a> Nearby<'a> {
         self.tiles.outline(tile as usize)
     }
 
+    /// How many tiles [`Self::near`] looks at.
+    pub(super) fn candidates(&self, place: Point, within: f64) -> u64 {
+        self.buckets.count(&Rect::new(place, place).grown(within + self.reach))
+    }
+
     /// Calls `visit` with every drawn tile that may come nearer to a place than `within` millimetres.
     pub(super) fn near(&self, place: Point, within: f64, mut visit: impl FnMut(u32)) {
         let area = Rect::new(place, place).grown(within + self.reach);
@@ -126,12 +144,20 @@ impl<'a> Nearby<'a> {
     /// Calls `visit` with every drawn tile that a line may cross, some of them more than once. The line is taken piece by
     /// piece, since the disc round a long one holds most of the page.
     pub(super) fn along(&self, a: Point, b: Point, mut visit: impl FnMut(u32)) {
+        self.pieces(a, b).for_each(|(middle, within)| self.near(middle, within, &mut visit));
+    }
+
+    /// How many tiles [`Self::along`] looks at.
+    pub(super) fn candidates_along(&self, a: Point, b: Point) -> u64 {
+        self.pieces(a, b).map(|(middle, within)| self.candidates(middle, within)).sum()
+    }
+
+    /// A line in pieces: their middles, and half their length.
+    fn pieces(&self, a: Point, b: Point) -> impl Iterator<Item = (Point, f64)> + use<> {
         let length = a.distance(b);
         let pieces = (length / (2.0 * self.buckets.cell)).ceil().clamp(1.0, MOST_CELLS) as u32;
-        for piece in 0..pieces {
-            let middle = a.lerp(b, (f64::from(piece) + 0.5) / f64::from(pieces));
-            self.near(middle, length / f64::from(pieces) / 2.0, &mut visit);
-        }
+        let half = length / f64::from(pieces) / 2.0;
+        (0..pieces).map(move |piece| (a.lerp(b, (f64::from(piece) + 0.5) / f64::from(pieces)), half))
     }
 }
 

@@ -7,6 +7,8 @@ use crate::drawing::{Dots, Layer, Strokes};
 use crate::geom::{Length, Point};
 use crate::scene::{Cap, Colour, Fill, FillKind, Ground, Paint};
 
+use super::solid;
+
 /// What a slot holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
@@ -96,7 +98,7 @@ impl Palette {
             });
             let layer = &mut layers[at];
             match kind {
-                Kind::Areas => layer.areas = batch.areas,
+                Kind::Areas => layer.areas = solid::united(batch.areas),
                 Kind::Strokes(pen, cap) => {
                     let (lines, bundle_ends) = (batch.lines, batch.ends);
                     layer.strokes.push(Strokes { lines, bundle_ends, ..Strokes::new(pen, cap) });

@@ -53,6 +53,16 @@ pub(super) fn push(region: &Region, out: &mut Batch) {
     out.areas.extend(region.polygons().iter().map(rings));
 }
 
+/// Areas of one ink as one: drawn side by side, each would be smoothed at its own edges and the paper would shine through
+/// where they meet.
+pub(super) fn united(areas: Vec<Vec<Vec<Point>>>) -> Vec<Vec<Vec<Point>>> {
+    if areas.len() < 2 {
+        return areas;
+    }
+    let whole = Region::from_rings(areas.into_iter().flatten().collect(), FillRule::NonZero);
+    whole.polygons().iter().map(|polygon| polygon.rings().cloned().collect()).collect()
+}
+
 /// Where in a box a field is at least `threshold`: square cells are halved along a diagonal, and over each half the field
 /// is taken to be even between its corners.
 fn above(field: &Field, threshold: f64, bounds: &Rect) -> Region {

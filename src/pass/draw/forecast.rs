@@ -1,0 +1,80 @@
+//! What a paint will cost at the least, reckoned before anything is drawn, so that what is hopeless is refused at once.
+
+use rayon::prelude::*;
+
+use crate::geom::ring_area;
+use crate::scene::FillKind;
+
+use super::budget::{DOT, Exceeded, LINE};
+use super::job::Job;
+
+/// Looks, and places of lines and dots.
+#[derive(Default, Clone, Copy)]
+struct Cost {
+    overlap: u128,
+    lines: u128,
+    dots: u128,
+}
+
+impl Cost {
+    fn plus(self, other: Self) -> Self {
+        Self { overlap: self.overlap + other.overlap, lines: self.lines + other.lines, dots: self.dots + other.dots }
+    }
+}
+
+/// Checks that a paint's tiles can be drawn within its budget.
+pub(super) fn check(job: &Job<'_>) -> Result<(), Exceeded> {
+    let tiles = (0..job.tiles.len()).into_par_iter().filter(|&tile| job.tiles.is_drawn(tile));
+    let cost = tiles.map(|tile| cost(job, tile)).reduce(Cost::default, Cost::plus);
+    let (lines, dots) = (cost.lines * u128::from(LINE), cost.dots * u128::from(DOT));
+    if cost.overlap + lines + dots <= u128::from(job.budget.most_work()) {
+        return Ok(());
+    }
+    let whole = |count: u128| u64::try_from(count).unwrap_or(u64::MAX);
+    Err(if cost.overlap > lines + dots {
+        overlap(job)
+    } else if lines > dots {
+        Exceeded::Places { what: "lines", count: whole(cost.lines) }
+    } else {
+        Exceeded::Places { what: "dots", count: whole(cost.dots) }
+    })
+}
+
+/// What one tile costs.
+fn cost(job: &Job<'_>, tile: usize) -> Cost {
+    let mut cost = Cost::default();
+    let (area, radius) = (ring_area(job.tiles.outline(tile)).abs(), job.nearby.radius(tile));
+    let layers = job.tiles.layers[tile];
+    let fills = &job.paint.tone.fill;
+    let count = (layers.full + u8::from(layers.part > 0.0)).min(4);
+    for number in 1..=count {
+        let share = if number <= layers.full { 1.0 } else { layers.part };
+        // A tile is nowhere narrower than its area over its diameter. Casts of what is too great give the greatest number.
+        let lines = |pitch: f64| area / (2.0 * radius) / pitch;
+        match &fills[usize::from(number - 1).min(fills.len() - 1)].kind {
+            FillKind::Lines(hatch) | FillKind::Dashes { hatch, .. } => {
+                cost.lines += u128::from(lines(hatch.pitch.to_mm()) as u64);
+            }
+            FillKind::Dots { hatch, spacing, .. } => {
+                cost.dots += u128::from((share * area / hatch.pitch.to_mm() / spacing.to_mm()) as u64);
+                cost.lines += u128::from(lines(hatch.pitch.to_mm()) as u64);
+            }
+            FillKind::Solid => {}
+        }
+    }
+    if job.has_covers() {
+        // At least a quarter of what is looked at does hide, and its profile is taken once a layer.
+        let candidates = job.nearby.candidates(job.sites.points[tile], radius);
+        cost.overlap = u128::from(candidates) * u128::from(1 + count);
+    }
+    cost
+}
+
+/// How deeply the drawn tiles overlap.
+fn overlap(job: &Job<'_>) -> Exceeded {
+    let drawn = || (0..job.tiles.len()).filter(|&tile| job.tiles.is_drawn(tile));
+    let count = drawn().count().max(1) as f64;
+    let area = drawn().map(|tile| ring_area(job.tiles.outline(tile)).abs()).sum::<f64>() / count;
+    let spacing = job.sites.spacing;
+    Exceeded::Overlap { side: area.sqrt(), spacing, depth: (area / (spacing * spacing)).min(count) as u64 }
+}
