@@ -229,7 +229,7 @@ fn masks_are_the_dark_part() {
 fn masks_of_noise_are_refused() {
     // Every second pixel dark, in both ways: four corners round each.
     let checked = |width: u32, height: u32| {
-        let dark = |i: u32| if (i % width + i / width) % 2 == 0 { 0.0 } else { 1.0 };
+        let dark = |i: u32| if (i % width + i / width).is_multiple_of(2) { 0.0 } else { 1.0 };
         let image = Image { width, height, samples: (0..width * height).map(dark).collect() };
         mask(&image, 0.5, rect(0.0, 0.0, 60.0, 60.0)).map(|region| region.polygons().len())
     };
