@@ -154,12 +154,12 @@ fn too_many_tiles_and_strokes_are_refused_before_they_are_made() {
 
 #[test]
 fn tangled_outlines_are_refused_before_they_are_resolved() {
-    // Corners all over the canvas, each far from the one before.
+    // Corners all over a square of 20 m, each far from the one before.
     let corners: Vec<_> = (1..8_000_u64).map(|i| (i * i * 7919 % 20_011, i * i * i * 1_049 % 20_021)).collect();
     let joined =
         |corner: fn(&(u64, u64)) -> String, between: &str| corners.iter().map(corner).collect::<Vec<_>>().join(between);
     let path = joined(|(x, y)| format!("{x} {y}"), " L ");
-    let list = joined(|(x, y)| format!("({x}um, {y}um)"), ", ");
+    let list = joined(|(x, y)| format!("({x}mm, {y}mm)"), ", ");
     refused(&format!("{HEAD}let a = path(\"M {path} Z\")\n"), Code::Limit);
     refused(&format!("{HEAD}let a = polygon([{list}])\n"), Code::Limit);
     // Two combs, each of which crosses nothing by itself.
