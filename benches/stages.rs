@@ -58,7 +58,7 @@ fn drawing(canvas: &Canvas, paint: &Paint, stages: &PaintStages) -> Drawing {
     let mut assembly = Assembly::new(canvas, &limits);
     let setting = Setting { groups: Vec::new(), ink: canvas.ink };
     match assembly.paint(paint, &setting, &stages.borrow()) {
-        Ok(()) => assembly.finish(),
+        Ok(_) => assembly.finish(),
         Err(diagnostic) => unreachable!("{}", diagnostic.message),
     }
 }
