@@ -8,7 +8,7 @@ use clap::Args;
 use crate::span::{Sources, Syntax};
 use crate::syntax::{self, format, kake, toml};
 
-use super::files::{plain, print, write_beside};
+use super::files::{plain, print, replace};
 use super::{Ended, report};
 
 #[derive(Debug, Args)]
@@ -73,11 +73,5 @@ pub(super) fn run(arguments: &ConvertArgs) -> Ended {
     if stdout {
         return print(converted.as_bytes());
     }
-    match write_beside(&arguments.output, |out| out.write_all(converted.as_bytes())).and_then(|file| file.keep()) {
-        Ok(()) => Ended::Done,
-        Err(error) => {
-            eprintln!("kake: cannot write {}: {}", arguments.output.display(), plain(&error));
-            Ended::Io
-        }
-    }
+    replace(&arguments.output, &converted)
 }

@@ -190,6 +190,17 @@ fn permissions(builder: &mut tempfile::Builder<'_, '_>, target: &Path) {
 #[cfg(not(unix))]
 fn permissions(_builder: &mut tempfile::Builder<'_, '_>, _target: &Path) {}
 
+/// Replaces a file by a text, whole or not at all.
+pub(super) fn replace(target: &Path, text: &str) -> Ended {
+    match write_beside(target, |out| out.write_all(text.as_bytes())).and_then(Pending::keep) {
+        Ok(()) => Ended::Done,
+        Err(error) => {
+            eprintln!("kake: cannot write {}: {}", target.display(), plain(&error));
+            Ended::Io
+        }
+    }
+}
+
 impl Pending {
     /// Moves the file to its place.
     pub(super) fn keep(self) -> io::Result<()> {

@@ -9,7 +9,7 @@ use clap::Args;
 use crate::span::{Sources, Syntax};
 use crate::syntax::{self, format, kake};
 
-use super::files::{plain, print, write_beside};
+use super::files::{plain, print, replace};
 use super::{Ended, report};
 
 #[derive(Debug, Args)]
@@ -68,16 +68,7 @@ fn one(file: &Path, check: bool) -> Ended {
         }
         (false, true) => print(formatted.as_bytes()),
         (false, false) if unchanged => Ended::Done,
-        (false, false) => {
-            let written = write_beside(file, |out| out.write_all(formatted.as_bytes())).and_then(|file| file.keep());
-            match written {
-                Ok(()) => Ended::Done,
-                Err(error) => {
-                    eprintln!("kake: cannot write {name}: {}", plain(&error));
-                    Ended::Io
-                }
-            }
-        }
+        (false, false) => replace(file, &formatted),
     }
 }
 

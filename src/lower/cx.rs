@@ -245,10 +245,22 @@ impl<'a, 'c> Cx<'a, 'c> {
         Length::mm(self.unit)
     }
 
+    /// The modules whose names can be seen from one without a prefix: itself, then what it imports without `as`.
+    pub(super) fn seen_from(&self, module: usize) -> impl Iterator<Item = &'c Module<'a>> + use<'a, 'c> {
+        let modules = self.modules;
+        let opened = modules[module].opened.iter().map(move |&opened| &modules[opened]);
+        std::iter::once(&modules[module]).chain(opened)
+    }
+
     /// The path of the file that a text stands in; the scene's own for values from the command line.
     pub(super) fn path_of(&self, source: SourceId) -> &'a str {
         let module = self.modules.iter().find(|module| module.document.source == source);
         module.or(self.modules.first()).map_or("", |module| module.path)
+    }
+
+    /// A file that was read before.
+    pub(super) fn file(&self, path: &str) -> Option<Arc<[u8]>> {
+        self.files.get(path).cloned()
     }
 
     /// Remembers a file that was read.

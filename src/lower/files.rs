@@ -27,6 +27,9 @@ fn read(call: &mut Call<'_, '_, '_>) -> Option<(String, Arc<[u8]>)> {
         call.cx.report_value(Diagnostic::error(Code::Outside, span, message).hint(ROOT_HINT));
         return None;
     };
+    if let Some(bytes) = call.cx.file(&path) {
+        return Some((path, bytes));
+    }
     match call.cx.loader.load(&path) {
         Ok(bytes) => {
             call.cx.remember_file(&path, &bytes);

@@ -99,8 +99,7 @@ fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span
         cx.report(Diagnostic::error(Code::UnknownFunction, span, message));
         return;
     }
-    let mut known: Vec<&str> = module.functions.keys().copied().collect();
-    known.extend(module.opened.iter().flat_map(|&opened| modules[opened].functions.keys().copied()));
+    let mut known: Vec<&str> = cx.seen_from(scope.module).flat_map(|module| module.functions.keys().copied()).collect();
     // What fits the place comes first: a misspelt shape is no square root.
     let fitting = vocabulary::fitting(slot);
     match fitting.is_empty() {
@@ -126,9 +125,7 @@ fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span
 }
 
 fn find_function<'a>(cx: &Cx<'a, '_>, module: usize, name: &str) -> Option<Function<'a>> {
-    let module = &cx.modules[module];
-    let opened = module.opened.iter().map(|&opened| &cx.modules[opened]);
-    std::iter::once(module).chain(opened).find_map(|module| module.functions.get(name)).copied()
+    cx.seen_from(module).find_map(|module| module.functions.get(name)).copied()
 }
 
 fn call_function<'a>(
@@ -177,7 +174,8 @@ fn declare_param<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, param: &'a ast:
 }
 
 /// A scope with the parameters of a function or tone bound to arguments that are evaluated in the caller's scope; where
-/// a parameter takes anything, the names of the caller's place are known, as in `f(x)` in a field. `None` where one is missing, which was reported.
+/// a parameter takes anything, the names of the caller's place are known, as in `f(x)` in a field. `None` where one is
+/// missing, which was reported.
 pub(super) fn bind_arguments<'a>(
     cx: &mut Cx<'a, '_>,
     (caller, around): (&Rc<Scope<'a>>, Slot),

@@ -140,11 +140,6 @@ impl Reader<'_> {
     fn parse(&mut self, path: &str, from: Option<Span>) -> Option<(Document, Option<Vec<String>>)> {
         let extension = path.rsplit_once('.').map_or("", |(_, extension)| extension);
         let is_toml = extension.eq_ignore_ascii_case("toml");
-        if from.is_some() && !is_toml && !extension.eq_ignore_ascii_case("kake") && self.loader.load(path).is_ok() {
-            let hint = "imports are scenes and libraries: `.kake` or `.toml` files".to_owned();
-            self.report(Code::Import, from, format!("`{path}` is no scene"), Some(hint));
-            return None;
-        }
         let bytes = match self.loader.load(path) {
             Ok(bytes) => bytes,
             Err(error) => {
@@ -154,6 +149,11 @@ impl Reader<'_> {
                 return None;
             }
         };
+        if from.is_some() && !is_toml && !extension.eq_ignore_ascii_case("kake") {
+            let hint = "imports are scenes and libraries: `.kake` or `.toml` files".to_owned();
+            self.report(Code::Import, from, format!("`{path}` is no scene"), Some(hint));
+            return None;
+        }
         let syntax = if is_toml { Syntax::Toml } else { Syntax::Kake };
         let (source, text) = match syntax::decode(path, &bytes, syntax, self.sources) {
             Ok(decoded) => decoded,

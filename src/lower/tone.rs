@@ -67,9 +67,7 @@ const GROUND_DEGREES: f64 = 45.0;
 
 /// The tone of a name that can be seen from a module.
 pub(super) fn find<'a>(cx: &Cx<'a, '_>, module: usize, name: &str) -> Option<Tone<'a>> {
-    let module = &cx.modules[module];
-    let opened = module.opened.iter().map(|&opened| &cx.modules[opened]);
-    std::iter::once(module).chain(opened).find_map(|module| module.tones.get(name)).copied()
+    cx.seen_from(module).find_map(|module| module.tones.get(name)).copied()
 }
 
 /// A tone with arguments, which are evaluated in the caller's scope.
@@ -171,8 +169,7 @@ pub(super) fn expect_tone<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, expr: 
         }
         let modules = cx.modules;
         let module = &modules[scope.module];
-        let opened = module.opened.iter().flat_map(|&opened| modules[opened].tones.keys().copied());
-        let known: Vec<&str> = module.tones.keys().copied().chain(opened).collect();
+        let known: Vec<&str> = cx.seen_from(scope.module).flat_map(|module| module.tones.keys().copied()).collect();
         let hint = did_you_mean(name, known.iter().copied()).or_else(|| {
             let alias = module.aliases.iter().find(|(_, index)| modules[**index].tones.contains_key(name.as_str()));
             alias.map(|(alias, _)| format!("`{alias}.{name}` is a tone"))

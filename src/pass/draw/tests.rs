@@ -9,29 +9,16 @@ use crate::diag::Code;
 use crate::field::{Field, Node};
 use crate::geom::clip::convex_clearance;
 use crate::geom::{Angle, Length, Point, Rect, Vec2};
+use crate::pass::fixture::{self, canvas};
 use crate::pass::{cut, link, place, turn};
 use crate::region::Region;
 use crate::scene::{
-    AngleRule, Blend, Cap, Colour, Depth, Domain, Draw, Edge, Fill, FillKind, GridSize, Ground, Hatch, LayerGroup,
-    Link, Outline, Over, Placement, Scene, Shape, Stack, Tone,
+    AngleRule, Blend, Cap, Colour, Draw, Edge, Fill, FillKind, GridSize, Ground, Hatch, LayerGroup, Outline, Over,
+    Placement, Scene, Shape,
 };
-use crate::span::{Sources, Span, Syntax};
 use crate::stage::Standing;
 
 const NEAR: f64 = 1e-6;
-
-fn canvas(width: f64, height: f64) -> Canvas {
-    Canvas {
-        width: Length::mm(width),
-        height: Length::mm(height),
-        pixels: [600, 600],
-        dpi: 600.0,
-        paper: None,
-        ink: Colour::BLACK,
-        depth: Depth::Eight,
-        unit: Length::mm(1.0),
-    }
-}
 
 fn hatch(pitch: f64, pen: f64) -> Hatch {
     Hatch { pitch: Length::mm(pitch), pen: Length::mm(pen), inset: 0.5, shortest: Length::ZERO, cap: Cap::Butt }
@@ -59,31 +46,12 @@ fn linear(to: Point, start: f64, end: f64) -> Field {
 
 /// One kake of lines on Poisson-disk squares over the whole canvas.
 fn paint(canvas: &Canvas) -> Paint {
-    let span = Span::new(Sources::new().add("test", "", Syntax::Kake), 0, 0);
-    Paint {
-        name: "paint".to_owned(),
-        tone_name: "tone".to_owned(),
-        seed: 1,
-        region: Region::rect(canvas.bounds()),
-        tone: Tone {
-            place: Placement::Poisson { radius: Length::mm(1.5), tries: 30, density: None },
-            place_span: span,
-            domain: Domain::Canvas,
-            bleed: None,
-            shape: rect_shape(None, None),
-            link: Link::Delaunay,
-            angle: AngleRule::Bfs { candidates: 360 },
-            fill: vec![fill(FillKind::Lines(hatch(0.31, 0.1)))],
-            k: Field::constant(1.0),
-            k_span: span,
-            blend: Blend::Step,
-            stack: Stack::Cover,
-            over: Over::Print,
-            ground: None,
-            edge: Edge::Clip,
-        },
-        span,
-    }
+    let place = Placement::Poisson { radius: Length::mm(1.5), tries: 30, density: None };
+    let mut paint = fixture::paint(canvas, place, AngleRule::Bfs { candidates: 360 });
+    paint.seed = 1;
+    paint.tone.bleed = None;
+    paint.tone.fill = vec![fill(FillKind::Lines(hatch(0.31, 0.1)))];
+    paint
 }
 
 /// The same with one tile, at angle 0.
