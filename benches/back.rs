@@ -38,14 +38,7 @@ fn page(strokes: usize, depth: Depth) -> Drawing {
             paper: Some(Colour::WHITE),
             depth,
         },
-        layers: vec![Layer {
-            groups: Vec::new(),
-            name: "page".to_owned(),
-            ink: Colour::BLACK,
-            areas: Vec::new(),
-            strokes: vec![layer],
-            dots: Vec::new(),
-        }],
+        layers: vec![Layer { strokes: vec![layer], ..Layer::new(Vec::new(), "page".to_owned(), Colour::BLACK) }],
     }
 }
 

@@ -17,6 +17,15 @@ pub struct Sites {
     pub cells: Option<Vec<[i32; 2]>>,
 }
 
+impl Sites {
+    /// The site that a site is an image of, or itself: what random draws for a tile are keyed by, and its place in the
+    /// order of the pile.
+    #[must_use]
+    pub fn original(&self, site: usize) -> usize {
+        site
+    }
+}
+
 /// Which tiles are neighbours.
 #[derive(Debug, Clone, Default)]
 pub struct Graph {

@@ -34,14 +34,7 @@ pub(crate) mod samples {
     }
 
     pub(crate) fn layer(name: &str, ink: Colour) -> Layer {
-        Layer {
-            groups: Vec::new(),
-            name: name.to_owned(),
-            ink,
-            areas: Vec::new(),
-            strokes: Vec::new(),
-            dots: Vec::new(),
-        }
+        Layer::new(Vec::new(), name.to_owned(), ink)
     }
 
     pub(crate) fn lines(pen: f64, cap: Cap, bundles: &[&[[(f64, f64); 2]]]) -> Strokes {

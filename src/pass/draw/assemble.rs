@@ -114,14 +114,8 @@ impl<'a> Assembly<'a> {
     pub fn outline(&mut self, outline: &Outline, setting: &Setting) -> Result<(), Diagnostic> {
         let rings = outline.region.polygons().iter().flat_map(|polygon| polygon.rings());
         let polylines = rings.map(|ring| ring.iter().chain(ring.first()).copied().collect()).collect();
-        let layer = Layer {
-            groups: setting.groups.clone(),
-            name: "outline".to_owned(),
-            ink: setting.ink,
-            areas: Vec::new(),
-            strokes: vec![Strokes { polylines, ..Strokes::new(outline.pen, Cap::Butt) }],
-            dots: Vec::new(),
-        };
+        let mut layer = Layer::new(setting.groups.clone(), "outline".to_owned(), setting.ink);
+        layer.strokes.push(Strokes { polylines, ..Strokes::new(outline.pen, Cap::Butt) });
         self.add(vec![layer], outline.span)
     }
 

@@ -3,7 +3,7 @@
 //! A slot is a list of marks of one ink and one pen. Threads fill batches, one for each slot; batches are put together in
 //! the order of the tiles.
 
-use crate::drawing::{Dots, Layer, Strokes};
+use crate::drawing::{Curves, Dots, Layer, Strokes, Tapers};
 use crate::geom::{Length, Point};
 use crate::scene::{Cap, Colour, Fill, FillKind, Ground, Paint};
 
@@ -87,21 +87,26 @@ impl Palette {
                 whole.dots.extend_from_slice(&part.dots);
                 whole.ends.extend(part.ends.iter().map(|end| start + end));
                 whole.areas.extend(part.areas);
+                whole.curves.append(&part.curves);
+                whole.tapers.append(&part.tapers);
             }
         }
         let mut layers: Vec<Layer> = Vec::new();
         for (&(ink, kind), batch) in self.slots.iter().zip(whole).filter(|(_, batch)| !batch.is_empty()) {
             let at = layers.iter().position(|layer| layer.ink == ink).unwrap_or_else(|| {
                 let (groups, name) = (groups.to_vec(), name.to_owned());
-                layers.push(Layer { groups, name, ink, areas: Vec::new(), strokes: Vec::new(), dots: Vec::new() });
+                layers.push(Layer::new(groups, name, ink));
                 layers.len() - 1
             });
             let layer = &mut layers[at];
             match kind {
                 Kind::Areas => layer.areas = solid::united(batch.areas),
                 Kind::Strokes(pen, cap) => {
-                    let (lines, bundle_ends) = (batch.lines, batch.ends);
-                    layer.strokes.push(Strokes { lines, bundle_ends, ..Strokes::new(pen, cap) });
+                    let (lines, bundle_ends, curves) = (batch.lines, batch.ends, batch.curves);
+                    if !(lines.is_empty() && curves.is_empty()) {
+                        layer.strokes.push(Strokes { lines, bundle_ends, curves, ..Strokes::new(pen, cap) });
+                    }
+                    layer.tapers.append(&batch.tapers);
                 }
                 Kind::Dots(radius) => {
                     layer.dots.push(Dots { radius, centres: batch.dots, bundle_ends: batch.ends });
@@ -118,6 +123,10 @@ pub(super) struct Batch {
     pub(super) lines: Vec<[Point; 2]>,
     pub(super) dots: Vec<Point>,
     pub(super) areas: Vec<Vec<Vec<Point>>>,
+    /// Curved strokes of the slot's pen.
+    pub(super) curves: Curves,
+    /// Strokes that run out.
+    pub(super) tapers: Tapers,
     /// Where each tile's lines or dots end.
     ends: Vec<usize>,
 }
@@ -129,7 +138,7 @@ impl Batch {
 
     /// How many marks there are.
     pub(super) fn len(&self) -> usize {
-        self.lines.len() + self.dots.len() + self.areas.len()
+        self.lines.len() + self.dots.len() + self.areas.len() + self.curves.len() + self.tapers.spines.len()
     }
 
     /// Ends the marks of a tile, if it has any.
@@ -138,5 +147,7 @@ impl Batch {
         if end > self.ends.last().copied().unwrap_or(0) {
             self.ends.push(end);
         }
+        self.curves.end_bundle();
+        self.tapers.spines.end_bundle();
     }
 }
