@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use crate::field::Field;
 use crate::region::Region;
-use crate::scene::{AngleRule, Colour, Fill, Placement, Shape};
+use crate::scene::{AngleRule, Colour, Fill, Hand, Placement, Shape};
 use crate::span::{SourceId, Span};
 
 use super::tone::ToneValue;
@@ -34,6 +34,7 @@ pub(super) enum Value {
     Shape(Rc<Shape>),
     Angles(Rc<AngleRule>),
     Fill(Rc<Fill>),
+    Hand(Hand),
     Tone(Rc<ToneValue>),
     /// A word of the vocabulary of its place: `knockout`, `a4`, `none`.
     Word(&'static str),
@@ -108,6 +109,7 @@ pub(super) enum Kind {
     Shape,
     Angles,
     Fill,
+    Hand,
     Tone,
     /// Not a type that can be named: a word of some vocabulary.
     Word,
@@ -115,7 +117,7 @@ pub(super) enum Kind {
 
 impl Kind {
     /// The kinds that have a name.
-    pub(super) const NAMED: [Self; 19] = [
+    pub(super) const NAMED: [Self; 20] = [
         Self::Number,
         Self::Length,
         Self::Angle,
@@ -134,6 +136,7 @@ impl Kind {
         Self::Shape,
         Self::Angles,
         Self::Fill,
+        Self::Hand,
         Self::Tone,
     ];
 
@@ -157,6 +160,7 @@ impl Kind {
             Self::Shape => "shape",
             Self::Angles => "angles",
             Self::Fill => "fill",
+            Self::Hand => "hand",
             Self::Tone => "tone",
             Self::Word => "word",
         }
@@ -187,6 +191,7 @@ impl Kind {
             Self::Shape => "a shape",
             Self::Angles => "an angle rule",
             Self::Fill => "a fill",
+            Self::Hand => "a hand",
             Self::Tone => "a tone",
             Self::Word => "a word",
         }
@@ -221,6 +226,7 @@ impl Value {
             Self::Shape(_) => Kind::Shape,
             Self::Angles(_) => Kind::Angles,
             Self::Fill(_) => Kind::Fill,
+            Self::Hand(_) => Kind::Hand,
             Self::Tone(_) => Kind::Tone,
             Self::Word(_) => Kind::Word,
             Self::Unknown(kind) => return *kind,

@@ -2,6 +2,7 @@
 
 mod fields;
 mod fills;
+mod hands;
 mod mathematics;
 mod placements;
 mod regions;
@@ -18,18 +19,19 @@ use super::value::{FieldUnit, Kind, TypedField, Value};
 use crate::field::{Field, Node};
 
 /// Every table of signatures with the kind of place that it belongs to.
-const TABLES: [(Option<Kind>, &[Signature]); 7] = [
+const TABLES: [(Option<Kind>, &[Signature]); 8] = [
     (Some(Kind::Region), regions::SIGNATURES),
     (Some(Kind::Field), fields::SIGNATURES),
     (Some(Kind::Placement), placements::SIGNATURES),
     (Some(Kind::Angles), placements::ANGLES),
     (Some(Kind::Shape), shapes::SIGNATURES),
     (Some(Kind::Fill), fills::SIGNATURES),
+    (Some(Kind::Hand), hands::SIGNATURES),
     (None, mathematics::SIGNATURES),
 ];
 
 /// Names of the language that this version does not draw.
-const LATER: [&str; 23] = [
+const LATER: [&str; 22] = [
     "arcs",
     "cell",
     "coloured",
@@ -38,7 +40,6 @@ const LATER: [&str; 23] = [
     "edges",
     "flood",
     "flow",
-    "hand",
     "motif",
     "nawaami",
     "penrose",

@@ -14,13 +14,14 @@ use crate::scene::{Canvas, Fill, FillKind, Ground, Hatch};
 
 use super::budget::{BANK, DOT, Exceeded, LINE, PROFILE};
 use super::dashes::Dashes;
-use super::dots::Dotting;
+use super::dots::{Dot, Dotting, end_row};
 use super::edge::Contact;
+use super::hand::{Bundle, Line, Wander};
 use super::job::{Job, Piece, Scratch};
 use super::lattice::Lattice;
-use super::lines::Line;
 use super::palette::Batch;
 use super::solid;
+use super::stroke::Stroke;
 
 /// Lines that one thread draws at a time; they also make a bundle.
 const BAND: usize = 64;
@@ -37,8 +38,8 @@ pub(super) fn draw(job: &Job<'_>, canvas: &Canvas) -> Result<Vec<Vec<Batch>>, Ex
 /// Hatches the gaps as the nearest tile is hatched. Tiles that are left out at the region's edge have gaps too.
 fn nearest(job: &Job<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
     let cells = Cells::new(job.sites, job.graph, Length::ZERO, Length::ZERO);
-    let pens = job.paint.tone.fill.iter().filter_map(|fill| fill.kind.hatch());
-    let margin = pens.map(|hatch| hatch.pen.to_mm() / 2.0).fold(0.0, f64::max);
+    let hatches = job.paint.tone.fill.iter().filter_map(|fill| fill.kind.hatch());
+    let margin = hatches.map(|hatch| job.paint.tone.hand.reach(hatch.pen).to_mm()).fold(0.0, f64::max);
     job.in_chunks(|scratch, tile, out| {
         let outline = job.tiles.outline(tile);
         if job.tiles.layers[tile].is_blank() || outline.is_empty() {
@@ -56,7 +57,8 @@ fn nearest(job: &Job<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
         scratch.covers.clear();
         job.budget.look(&mut scratch.looks, job.nearby.candidates(site, reach))?;
         job.nearby.near(site, reach, |other| scratch.covers.push(other));
-        job.draw_layers(&Piece { tile, beyond: Some(&cell), is_clipped: contact == Contact::Crossing }, scratch, out)
+        let (beyond, is_clipped) = (Some(cell.as_slice()), contact == Contact::Crossing);
+        job.draw_layers(&Piece { tile, beyond, is_clipped, partner: Some(outline) }, scratch, out)
     })
 }
 
@@ -65,7 +67,8 @@ fn even(job: &Job<'_>, canvas: &Canvas, fill: &Fill, angle: Angle) -> Result<Vec
     let frame = Frame::new(canvas.bounds().centre(), angle.unit());
     let mut region = Profile::default();
     region.set(&job.bank.region().bounds().corners(), &frame);
-    let plane = Plane { job, frame, region };
+    let bundle = (!job.paint.tone.hand.is_ruled()).then(|| Bundle::ground(job.paint));
+    let plane = Plane { job, frame, region, bundle };
     match &fill.kind {
         FillKind::Lines(hatch) => plane.lines(hatch, None),
         FillKind::Dashes { hatch, dash, gap } => plane.lines(hatch, Some(&Dashes::new(*dash, *gap))),
@@ -74,7 +77,7 @@ fn even(job: &Job<'_>, canvas: &Canvas, fill: &Fill, angle: Angle) -> Result<Vec
             let drawn = (0..job.tiles.len()).filter(|&tile| job.tiles.is_drawn(tile));
             let outlines = drawn.map(|tile| job.tiles.outline(tile).to_vec()).collect();
             let mut batches = job.palette.batches();
-            let batch = &mut batches[job.palette.ground_slot()];
+            let batch = &mut batches[job.palette.ground_slots().start];
             solid::push(&job.bank.region().difference(&Region::from_rings(outlines, FillRule::NonZero)), batch);
             job.budget.mark(batch.len())?;
             Ok(vec![batches])
@@ -88,6 +91,8 @@ struct Plane<'a> {
     frame: Frame,
     /// The box around it.
     region: Profile,
+    /// How a hand draws it, if not ruled.
+    bundle: Option<Bundle>,
 }
 
 impl Plane<'_> {
@@ -95,24 +100,26 @@ impl Plane<'_> {
     fn in_bands(
         &self,
         pitch: Length,
-        draw: impl Fn(&mut Scratch, &[(i64, f64)], &mut Batch) -> Result<(), Exceeded> + Sync,
+        draw: impl Fn(&mut Scratch, &[(i64, f64)], &mut [Batch]) -> Result<(), Exceeded> + Sync,
     ) -> Result<Vec<Vec<Batch>>, Exceeded> {
         let lattice = Lattice::cell(self.region.across(), 0.0, pitch.to_mm());
         self.job.budget.work(lattice.count() * (LINE + BANK) as f64)?;
         if lattice.count() > self.job.budget.limit() as f64 {
             return Err(Exceeded::Marks);
         }
-        let lines: Vec<(i64, f64)> = lattice.places().collect();
+        // Lines stray by less than half a step, so that they stay in order.
+        let shift = |number| self.bundle.map_or(0.0, |bundle| bundle.shift(number, lattice.step()));
+        let lines: Vec<(i64, f64)> = lattice.places().map(|(number, v)| (number, v + shift(number))).collect();
         lines
             .par_chunks(BAND)
             .map(|band| {
                 let mut batches = self.job.palette.batches();
-                let batch = &mut batches[self.job.palette.ground_slot()];
+                let own = &mut batches[self.job.palette.ground_slots()];
                 let mut scratch = Scratch::default();
-                draw(&mut scratch, band, batch)?;
+                draw(&mut scratch, band, own)?;
                 self.job.budget.work(scratch.looks as f64)?;
-                batch.end_bundle();
-                self.job.budget.mark(batch.len())?;
+                own.iter_mut().for_each(Batch::end_bundle);
+                self.job.budget.mark(own.iter().map(Batch::len).sum())?;
                 Ok(batches)
             })
             .collect()
@@ -121,6 +128,7 @@ impl Plane<'_> {
     fn lines(&self, hatch: &Hatch, dashes: Option<&Dashes>) -> Result<Vec<Vec<Batch>>, Exceeded> {
         let ranges = self.tile_ranges();
         let along = self.region.along();
+        let bundle = self.bundle.as_ref();
         self.in_bands(hatch.pitch, |scratch, band, out| {
             let hidden = self.hidden(band, &ranges, scratch)?;
             for (&(number, v), mut hidden) in band.iter().zip(hidden) {
@@ -130,9 +138,11 @@ impl Plane<'_> {
                 for (start, end) in hidden {
                     scratch.ranges.subtract(start, end);
                 }
-                self.job.bank.clip(&self.frame, v, hatch, &mut scratch.ranges, &mut scratch.edge);
-                let line = Line { frame: &self.frame, number, v, is_backwards: number.rem_euclid(2) == 1 };
-                line.emit(self.job, hatch, dashes, scratch, out)?;
+                let wander = bundle.map_or(Wander::NONE, |bundle| bundle.wander(number, along.1 - along.0));
+                let line = Line { wander, ..Line::ruled(&self.frame, number, v) };
+                let stroke = Stroke::new(line, bundle, hatch, along, number.rem_euclid(2) == 1);
+                self.job.bank.clip(&self.frame, v, stroke.nib(hatch), &mut scratch.ranges, &mut scratch.edge);
+                stroke.emit(self.job, hatch, dashes, scratch, out)?;
             }
             Ok(())
         })
@@ -147,19 +157,15 @@ impl Plane<'_> {
         self.in_bands(dotting.hatch.pitch, |scratch, band, out| {
             for &(number, v) in band {
                 self.job.budget.work(row.count() * (DOT + BANK) as f64)?;
-                let start = out.dots.len();
-                for (_, u) in row.places() {
-                    let centre = self.frame.page(u, v);
-                    if self.is_free(centre, dotting.radius, scratch)? {
-                        out.dots.push(centre);
+                let starts: Vec<usize> = out.iter().map(|batch| batch.dots.len()).collect();
+                for (mark, u) in row.places() {
+                    let dot = Dot::new(self.bundle.as_ref(), dotting, (number, mark), u, row.step());
+                    let centre = self.frame.page(dot.u, v);
+                    if self.is_free(centre, dot.radius, scratch)? {
+                        out[dot.weight].dots.push(centre);
                     }
                 }
-                if number.rem_euclid(2) == 1 {
-                    out.dots[start..].reverse();
-                }
-                if out.dots.len() > self.job.budget.limit() {
-                    return Err(Exceeded::Marks);
-                }
+                end_row(out, &starts, number.rem_euclid(2) == 1, self.job.budget)?;
             }
             Ok(())
         })

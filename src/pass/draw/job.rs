@@ -4,14 +4,16 @@ use rayon::prelude::*;
 
 use crate::geom::clip::{Frame, Profile, Ranges};
 use crate::geom::{Angle, Point, Vec2};
+use crate::pass::cut::voronoi::Cells;
 use crate::scene::{FillKind, Paint, Stack};
 use crate::stage::{Angles, Graph, Sites, Standing, Tiles};
 
 use super::budget::{Budget, Exceeded, PROFILE};
 use super::edge::{self, Bank};
+use super::hand::Bundle;
 use super::nearby::Nearby;
 use super::palette::{Batch, Palette};
-use super::{dashes, dots, lines, solid};
+use super::{dashes, dots, lines, solid, stroke};
 
 /// Tiles that one thread draws at a time.
 const CHUNK: usize = 256;
@@ -27,6 +29,8 @@ pub(super) struct Job<'a> {
     pub(super) nearby: &'a Nearby<'a>,
     pub(super) palette: &'a Palette,
     pub(super) budget: &'a Budget,
+    /// The cells that strokes run on into where the ground continues them.
+    pub(super) cells: Option<&'a Cells<'a>>,
 }
 
 /// Memory that is used again for every tile.
@@ -38,6 +42,8 @@ pub(super) struct Scratch {
     pub(super) whole: Profile,
     /// The outline they are drawn in.
     pub(super) area: Profile,
+    /// What strokes run on into.
+    pub(super) partner: Profile,
     /// Profiles of the covers; the list may be longer than they are many.
     pub(super) shadows: Vec<Profile>,
     /// What is left of a line.
@@ -45,6 +51,10 @@ pub(super) struct Scratch {
     /// Other ranges along it.
     pub(super) others: Vec<(f64, f64)>,
     pub(super) edge: edge::Scratch,
+    pub(super) stroke: stroke::Scratch,
+    /// A tile's cell, and what it is cut with.
+    pub(super) cell: Vec<Point>,
+    pub(super) spare: Vec<Point>,
     /// Looks that the budget does not know of as yet.
     pub(super) looks: u64,
 }
@@ -65,6 +75,10 @@ pub(super) struct Layer<'a> {
     pub(super) is_continued: bool,
     /// Whether the region's outline comes near.
     pub(super) is_clipped: bool,
+    /// What strokes run on into beyond the area: the other one of the tile and its cell.
+    pub(super) partner: Option<&'a [Point]>,
+    /// How a hand draws it, if not ruled.
+    pub(super) bundle: Option<Bundle>,
 }
 
 /// A tile, or an area that is hatched as one.
@@ -74,6 +88,8 @@ pub(super) struct Piece<'a> {
     pub(super) beyond: Option<&'a [Point]>,
     /// Whether the region's outline comes near.
     pub(super) is_clipped: bool,
+    /// What strokes run on into beyond it: the other one of the tile and its cell.
+    pub(super) partner: Option<&'a [Point]>,
 }
 
 impl Job<'_> {
@@ -110,7 +126,8 @@ impl Job<'_> {
         }
         scratch.covers.clear();
         if self.has_covers() {
-            let radius = self.nearby.radius(tile);
+            let hand = &self.paint.tone.hand;
+            let radius = self.nearby.radius(tile) + (hand.overshoot + hand.wobble).to_mm();
             self.budget.look(&mut scratch.looks, self.nearby.candidates(self.sites.points[tile], radius))?;
             self.nearby.near(self.sites.points[tile], radius, |other| {
                 if other as usize > tile {
@@ -119,7 +136,14 @@ impl Job<'_> {
             });
         }
         let is_clipped = self.tiles.standing[tile] == Standing::Clipped;
-        self.draw_layers(&Piece { tile, beyond: None, is_clipped }, scratch, out)
+        let mut cell = std::mem::take(&mut scratch.cell);
+        if let Some(cells) = self.cells {
+            cells.outline(tile, &mut cell, &mut scratch.spare);
+        }
+        let partner = self.cells.map(|_| cell.as_slice());
+        let drawn = self.draw_layers(&Piece { tile, beyond: None, is_clipped, partner }, scratch, out);
+        scratch.cell = cell;
+        drawn
     }
 
     /// Draws all layers of a tile, or of an area as that tile has them, minus the covers in `scratch`.
@@ -131,11 +155,12 @@ impl Job<'_> {
     ) -> Result<(), Exceeded> {
         let layers = self.tiles.layers[piece.tile];
         let outline = self.tiles.outline(piece.tile);
-        let fills = &self.paint.tone.fill;
+        let (fills, hand) = (&self.paint.tone.fill, &self.paint.tone.hand);
         let mut solid_slots = [None; 4];
         for number in 1..=(layers.full + u8::from(layers.part > 0.0)).min(4) {
             let at = usize::from(number - 1).min(fills.len() - 1);
-            let slot = self.palette.slot(at);
+            let slots = self.palette.slots(at);
+            let slot = slots.start;
             // Dots of all layers stand on one lattice.
             let turn = if matches!(fills[at].kind, FillKind::Dots { .. }) { 1 } else { number };
             let layer = Layer {
@@ -146,23 +171,26 @@ impl Job<'_> {
                 area: piece.beyond.unwrap_or(outline),
                 is_continued: piece.beyond.is_some(),
                 is_clipped: piece.is_clipped,
+                partner: piece.partner,
+                bundle: (!hand.is_ruled())
+                    .then(|| Bundle::new(self.paint, self.sites.original(piece.tile), i64::from(number))),
             };
-            let batch = &mut out[slot];
+            let batches = &mut out[slots];
             self.budget.look(&mut scratch.looks, PROFILE * (1 + scratch.covers.len() as u64))?;
             match &fills[at].kind {
-                FillKind::Lines(hatch) => lines::draw(self, &layer, hatch, None, scratch, batch)?,
+                FillKind::Lines(hatch) => lines::draw(self, &layer, hatch, None, scratch, batches)?,
                 FillKind::Dashes { hatch, dash, gap } => {
                     let dashes = dashes::Dashes::new(*dash, *gap);
-                    lines::draw(self, &layer, hatch, Some(&dashes), scratch, batch)?;
+                    lines::draw(self, &layer, hatch, Some(&dashes), scratch, batches)?;
                 }
                 FillKind::Dots { hatch, spacing, radius } => {
-                    dots::draw(self, &layer, &dots::Dotting::new(hatch, *spacing, *radius), scratch, batch)?;
+                    dots::draw(self, &layer, &dots::Dotting::new(hatch, *spacing, *radius), scratch, batches)?;
                 }
                 FillKind::Solid => {
                     // A second coat of the same ink is not seen.
                     if !solid_slots.contains(&Some(slot)) {
                         solid_slots[usize::from(number - 1)] = Some(slot);
-                        solid::draw(self, &layer, &scratch.covers, batch);
+                        solid::draw(self, &layer, &scratch.covers, &mut batches[0]);
                     }
                 }
             }

@@ -54,6 +54,11 @@ impl Lattice {
         Self { range: (first, last), ..self }
     }
 
+    /// From place to place.
+    pub(super) fn step(&self) -> f64 {
+        self.step
+    }
+
     /// How many places there are. It may be too great for a whole number.
     pub(super) fn count(&self) -> f64 {
         (self.range.1 - self.range.0 + 1.0).max(0.0)

@@ -12,6 +12,7 @@ mod dots;
 mod edge;
 mod forecast;
 mod ground;
+mod hand;
 mod job;
 mod knockout;
 mod lattice;
@@ -19,6 +20,7 @@ mod lines;
 mod nearby;
 mod palette;
 mod solid;
+mod stroke;
 
 #[cfg(test)]
 mod tests;
@@ -27,8 +29,10 @@ pub use assemble::{Assembly, Item, Setting, items};
 
 use crate::diag::Diagnostic;
 use crate::drawing::Layer;
+use crate::geom::Length;
 use crate::pass::cut::visible;
-use crate::scene::{Canvas, Limits, Paint};
+use crate::pass::cut::voronoi::Cells;
+use crate::scene::{Canvas, Ground, Limits, Paint};
 use crate::stage::{Angles, Graph, Sites, Tiles};
 
 use budget::{Budget, Exceeded};
@@ -65,8 +69,23 @@ pub fn draw(
     let &Stages { sites, graph, angles, tiles } = stages;
     let (bank, nearby) = (Bank::new(&visible), Nearby::new(sites, tiles));
     let (palette, budget) = (Palette::new(paint, setting.ink), Budget::new(limits));
-    let job =
-        Job { paint, sites, graph, angles, tiles, bank: &bank, nearby: &nearby, palette: &palette, budget: &budget };
+    // Strokes that run out or beyond tiles need to know where the ground goes on with them.
+    let hand = &paint.tone.hand;
+    let is_continued =
+        paint.tone.ground == Some(Ground::Nearest) && (hand.taper > 0.0 || hand.overshoot > Length::ZERO);
+    let cells = is_continued.then(|| Cells::new(sites, graph, Length::ZERO, Length::ZERO));
+    let job = Job {
+        paint,
+        sites,
+        graph,
+        angles,
+        tiles,
+        bank: &bank,
+        nearby: &nearby,
+        palette: &palette,
+        budget: &budget,
+        cells: cells.as_ref(),
+    };
     let chunks = chunks(&job, canvas).map_err(|exceeded| match exceeded {
         Exceeded::Overlap { .. } => exceeded.diagnostic(limits, paint.tone.place_span).note(paint.span, "painted here"),
         _ => exceeded.diagnostic(limits, paint.span),
