@@ -261,9 +261,7 @@ impl Outliner {
 
 /// The unit vector from one point to another, if they differ.
 fn direction(a: Point, b: Point) -> Option<Vec2> {
-    let way = b - a;
-    let length = way.length();
-    (length > 0.0).then(|| way * (1.0 / length))
+    (b - a).unit()
 }
 
 /// A straight stroke that ends at its points.
