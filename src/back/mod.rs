@@ -9,9 +9,11 @@ pub mod metadata;
 mod number;
 mod outline;
 mod path;
+mod pieces;
 pub mod png;
 pub mod raster;
 pub mod svg;
+mod taper;
 
 /// Drawings that several tests use.
 #[cfg(test)]
