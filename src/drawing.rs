@@ -157,6 +157,11 @@ impl Curves {
         self.points.len()
     }
 
+    /// All points of all chains, to be moved.
+    pub fn points_mut(&mut self) -> impl Iterator<Item = &mut Point> {
+        self.points.iter_mut()
+    }
+
     /// Where each tile's chains end, as numbers of chains, ascending. Chains after the last end belong to no tile.
     #[must_use]
     pub fn bundle_ends(&self) -> &[usize] {

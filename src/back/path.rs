@@ -138,8 +138,11 @@ impl Writer {
         }
         self.steps += 1;
         let mut command = [0; COMMAND];
-        let length =
-            if self.steps % ANCHOR == 0 { put_pair(b'L', there, &mut command) } else { put_step(step, &mut command) };
+        let length = if self.steps.is_multiple_of(ANCHOR) {
+            put_pair(b'L', there, &mut command)
+        } else {
+            put_step(step, &mut command)
+        };
         text.extend_from_slice(&command[..length]);
         self.here = there;
     }
@@ -148,7 +151,7 @@ impl Writer {
         let points = [b, c, d].map(units);
         self.steps += 1;
         let mut command = [0; 3 * COMMAND];
-        let is_anchor = self.steps % ANCHOR == 0;
+        let is_anchor = self.steps.is_multiple_of(ANCHOR);
         let mut at = 0;
         for (i, &p) in points.iter().enumerate() {
             let pair = if is_anchor { p } else { self.step_to(p) };

@@ -205,6 +205,8 @@ mod tests {
         let mut ground = sky.clone();
         ground.ink = Colour { r: 255, g: 0, b: 16, a: 128 };
         ground.strokes = vec![Strokes::new(Length::mm(0.1), Cap::Round)];
+        ground.strokes[0].curves.push(&ring(&[(0.0, 0.0), (1.0, 0.5), (2.0, -0.5), (3.0, 0.0)]));
+        ground.tapers.push(&ring(&[(0.0, 5.0), (1.0, 5.0), (2.0, 5.0), (3.0, 5.0)]), &[0.5, 0.0]);
         ground.strokes[0].polylines = vec![ring(&[(0.0, 0.0), (1.0, 0.5), (2.0, 0.0), (0.0, 0.0)])];
         let mut dots = layer("dots", Colour::BLACK);
         dots.dots.push(Dots {
@@ -231,6 +233,10 @@ mod tests {
         <g opacity="0.502">
         <g fill="none" stroke="#ff0010" stroke-linecap="round" stroke-linejoin="round" stroke-width="0.1">
         <path d="M0 0l1 0.5l1-0.5z"/>
+        <path d="M0 0c1 0.5 2-0.5 3 0"/>
+        </g>
+        <g fill="#ff0010">
+        <path d="M0 4.75l3 0.25l-3 0.25z"/>
         </g>
         </g>
         </g>
@@ -265,8 +271,9 @@ mod tests {
         }
         let mut found = Vec::new();
         paths(tree.root(), &mut found);
-        // The paper, two tiles, the closed stroke, the area and the dots.
-        assert_eq!(found, [(0.0, true), (0.25, true), (0.25, true), (0.1, true), (0.0, true), (1.0, true)]);
+        // The paper, two tiles, the closed stroke, the curve, the taper, the area and the dots.
+        let wanted = [0.0, 0.25, 0.25, 0.1, 0.1, 0.0, 0.0, 1.0].map(|width| (width, true));
+        assert_eq!(found, wanted);
     }
 
     /// What another program's reader and stroker make of a picture.
@@ -358,10 +365,14 @@ mod tests {
         let count = |text: &str| text.matches("<path").count();
         assert_eq!(count(&text_of(&few, None)), MANY);
         let shared = text_of(&many, None);
-        // Each of the five kinds of mark may leave one path that is not full.
-        assert!(count(&shared) <= MANY / TOGETHER + 5, "{}", count(&shared));
-        // No mark is lost: a tile has ten subpaths, a longer stroke or area one.
-        assert_eq!(shared.matches('M').count(), (MANY + 1) / 5 * 32 + 10);
+        // Each of the eight kinds of mark may leave one path that is not full.
+        assert!(count(&shared) <= MANY / TOGETHER + 8, "{}", count(&shared));
+        // No mark is lost: a tile has ten subpaths, a longer stroke or area one. Joins of tapers are circles of four
+        // curves.
+        let rings =
+            |layer: &Layer| layer.tapers.iter().map(|(spine, widths)| outline(spine, widths).len()).sum::<usize>();
+        let tapers: usize = many.layers.iter().map(rings).sum();
+        assert_eq!(shared.matches('M').count() - tapers, (MANY + 1) / 7 * 42 + 20);
         assert!(roxmltree::Document::parse(&shared).is_ok());
     }
 
