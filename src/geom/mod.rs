@@ -6,6 +6,7 @@
 mod angle;
 pub mod bezier;
 pub mod clip;
+pub mod hull;
 mod length;
 mod point;
 mod polygon;
