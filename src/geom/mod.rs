@@ -5,7 +5,9 @@
 
 mod angle;
 pub mod bezier;
+pub mod chain;
 pub mod clip;
+pub mod course;
 pub mod hull;
 mod length;
 mod point;

@@ -29,22 +29,17 @@ const TABLES: [(Option<Kind>, &[Signature]); 7] = [
 ];
 
 /// Names of the language that this version does not draw.
-const LATER: [&str; 23] = [
-    "arcs",
+const LATER: [&str; 17] = [
     "cell",
     "coloured",
     "contour",
-    "crosses",
     "edges",
     "flood",
     "flow",
     "hand",
-    "motif",
-    "nawaami",
     "penrose",
     "pinwheel",
     "relaxed",
-    "scribble",
     "stamp",
     "steps",
     "stops",
@@ -52,7 +47,6 @@ const LATER: [&str; 23] = [
     "triangle",
     "triangles",
     "tuned",
-    "waves",
 ];
 
 /// Whether a name belongs to the language but not to this version.

@@ -1,0 +1,112 @@
+//! Crosses along the hatch lines: two short strokes each, one along the line and one across it.
+//!
+//! A cross is drawn where its middle is seen, and its arms end where the tile does: every one of them still is a cross.
+
+use crate::geom::clip::{Frame, TOLERANCE};
+use crate::geom::{Length, Point, Vec2};
+use crate::scene::{Blend, Hatch};
+
+use super::budget::{BANK, DOT, Exceeded, LINE};
+use super::curves::look;
+use super::job::{Job, Layer, Scratch};
+use super::lattice::is_drawn;
+use super::lines::{CRUMB, interleaved};
+use super::palette::Batch;
+
+/// How crosses are set.
+pub(super) struct Crossing<'a> {
+    pub(super) hatch: &'a Hatch,
+    pub(super) spacing: Length,
+    /// From end to end of an arm.
+    pub(super) size: Length,
+}
+
+/// The arms of a cross in its frame.
+pub(super) const ARMS: [Vec2; 2] = [Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0)];
+
+/// Draws the crosses of a layer.
+pub(super) fn draw(
+    job: &Job<'_>,
+    layer: &Layer<'_>,
+    crossing: &Crossing<'_>,
+    scratch: &mut Scratch,
+    out: &mut Batch,
+) -> Result<(), Exceeded> {
+    let (lines, along) = interleaved(job, layer, crossing.hatch, crossing.spacing, scratch);
+    look(job, layer, scratch);
+    let lines = lines.over(scratch.area.across());
+    job.budget.work(lines.count() * LINE as f64)?;
+    let cost = 2 * (DOT + if layer.is_clipped { BANK } else { 0 });
+    let mut is_backwards = false;
+    for (i, v) in lines.places() {
+        let Some(span) = scratch.area.span(v).filter(|_| is_drawn(i, layer.share)) else { continue };
+        let row = along.over(span);
+        job.budget.work(row.count() * cost as f64)?;
+        let count = row.count() as u64;
+        for place in 0..count {
+            let Some(u) = row.place(if is_backwards { count - 1 - place } else { place }) else { continue };
+            cross(job, layer, crossing, Point::new(u, v), scratch, out)?;
+        }
+        is_backwards = !is_backwards;
+        if out.lines.len() > job.budget.limit() {
+            return Err(Exceeded::Marks);
+        }
+    }
+    Ok(())
+}
+
+/// Draws one cross, if its middle is seen.
+fn cross(
+    job: &Job<'_>,
+    layer: &Layer<'_>,
+    crossing: &Crossing<'_>,
+    middle: Point,
+    scratch: &mut Scratch,
+    out: &mut Batch,
+) -> Result<(), Exceeded> {
+    let covers = scratch.covers.len();
+    job.budget.look(&mut scratch.looks, covers as u64)?;
+    let hidden = &scratch.curves.hidden[..covers];
+    if !scratch.curves.area.holds(middle) || hidden.iter().any(|cover| cover.holds(middle)) {
+        return Ok(());
+    }
+    let page = layer.frame.page(middle.x, middle.y);
+    if job.paint.tone.blend == Blend::Contour && job.paint.tone.k.at(page) < f64::from(layer.number) - 0.5 {
+        return Ok(());
+    }
+    let half = crossing.size.to_mm() / 2.0;
+    for arm in ARMS {
+        let (start, end) = (middle + arm * -half, middle + arm * half);
+        let place = |share: f64| 2.0 * half * share - half;
+        let Some((from, to)) = scratch.curves.area.line(start, end) else { continue };
+        scratch.ranges.reset(place(from), place(to));
+        for cover in &scratch.curves.hidden[..covers] {
+            if let Some((from, to)) = cover.line(start, end) {
+                scratch.ranges.subtract(place(from), place(to));
+            }
+        }
+        let along = layer.frame.along * arm.x + layer.frame.along.turned() * arm.y;
+        draw_arm(job, crossing, &Frame::new(page, along), layer.is_clipped, scratch, out);
+    }
+    Ok(())
+}
+
+/// Draws what is left in `scratch.ranges` of an arm, if it still goes through the middle, which is the frame's origin.
+pub(super) fn draw_arm(
+    job: &Job<'_>,
+    crossing: &Crossing<'_>,
+    frame: &Frame,
+    is_clipped: bool,
+    scratch: &mut Scratch,
+    out: &mut Batch,
+) {
+    if is_clipped {
+        job.bank.clip(frame, 0.0, crossing.hatch, &mut scratch.ranges, &mut scratch.edge);
+    }
+    // Arms that are meant to be short are not too short.
+    let shortest = (crossing.hatch.shortest.min(crossing.size).to_mm() - TOLERANCE).max(CRUMB);
+    let left = scratch.ranges.as_slice().iter().find(|(from, to)| *from <= 0.0 && 0.0 <= *to && to - from >= shortest);
+    if let Some(&(from, to)) = left {
+        out.lines.push([frame.page(from, 0.0), frame.page(to, 0.0)]);
+    }
+}
