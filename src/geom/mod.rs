@@ -5,11 +5,13 @@
 
 mod angle;
 pub mod clip;
+mod figure;
 mod length;
 mod point;
 mod polygon;
 
 pub use angle::Angle;
+pub use figure::{BadOutline, Figure, Pieces, simple_outline};
 pub use length::Length;
 pub use point::{Point, Rect, Vec2};
 pub use polygon::{Polygon, ring_area, ring_bounds, ring_contains};
