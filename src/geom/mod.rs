@@ -6,12 +6,14 @@
 mod angle;
 pub mod bezier;
 pub mod clip;
+mod figure;
 mod length;
 mod point;
 mod polygon;
 
 pub use angle::Angle;
 pub use bezier::Cubic;
+pub use figure::{BadOutline, Figure, Pieces, simple_outline};
 pub use length::Length;
 pub use point::{Point, Rect, Vec2};
 pub use polygon::{Polygon, ring_area, ring_bounds, ring_contains};

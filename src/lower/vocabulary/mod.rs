@@ -29,28 +29,19 @@ const TABLES: [(Option<Kind>, &[Signature]); 7] = [
 ];
 
 /// Names of the language that this version does not draw.
-const LATER: [&str; 23] = [
+const LATER: [&str; 14] = [
     "arcs",
-    "cell",
     "coloured",
     "contour",
     "crosses",
-    "edges",
     "flood",
     "flow",
     "hand",
     "motif",
     "nawaami",
-    "penrose",
-    "pinwheel",
-    "relaxed",
     "scribble",
-    "stamp",
     "steps",
     "stops",
-    "trapezoid",
-    "triangle",
-    "triangles",
     "tuned",
     "waves",
 ];
