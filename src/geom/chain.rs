@@ -43,15 +43,17 @@ pub fn length(chain: &[Point]) -> f64 {
     cubics(chain).map(|cubic| cubic.length().to_mm()).sum()
 }
 
-/// Appends the part of a chain between two parameters. A part that goes on from the end of `out` is joined to it.
-pub fn part(chain: &[Point], (from, to): (f64, f64), out: &mut Vec<Point>) {
+/// The curves between two parameters of a chain: their numbers, and the parts of each.
+pub fn parts(chain: &[Point], (from, to): (f64, f64)) -> impl Iterator<Item = (usize, f64, f64)> {
     let (first, last) = (from.max(0.0) as usize, (to.ceil() as usize).min(count(chain)));
-    for number in first..last {
+    let part = move |number: usize| (number, (from - number as f64).max(0.0), (to - number as f64).min(1.0));
+    (first..last).map(part).filter(|&(_, start, end)| end - start > LEAST)
+}
+
+/// Appends the part of a chain between two parameters. A part that goes on from the end of `out` is joined to it.
+pub fn part(chain: &[Point], range: (f64, f64), out: &mut Vec<Point>) {
+    for (number, start, end) in parts(chain, range) {
         let Some(cubic) = curve(chain, number) else { return };
-        let (start, end) = ((from - number as f64).max(0.0), (to - number as f64).min(1.0));
-        if end - start <= LEAST {
-            continue;
-        }
         let Cubic([a, b, c, d]) = cubic.part(start, end);
         if out.is_empty() {
             out.push(a);

@@ -61,12 +61,6 @@ impl Hull {
         self.bounds.is_some_and(|bounds| bounds.touches(area))
     }
 
-    /// Whether a point lies in the polygon; the outline counts.
-    #[must_use]
-    pub fn holds(&self, p: Point) -> bool {
-        !self.planes.is_empty() && self.planes.iter().all(|plane| plane.beyond(p) <= TOLERANCE)
-    }
-
     /// How far along the frame the polygon reaches between two places across it.
     #[must_use]
     pub fn along(&self, across: (f64, f64)) -> Option<(f64, f64)> {

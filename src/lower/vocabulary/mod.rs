@@ -29,25 +29,7 @@ const TABLES: [(Option<Kind>, &[Signature]); 7] = [
 ];
 
 /// Names of the language that this version does not draw.
-const LATER: [&str; 17] = [
-    "cell",
-    "coloured",
-    "contour",
-    "edges",
-    "flood",
-    "flow",
-    "hand",
-    "penrose",
-    "pinwheel",
-    "relaxed",
-    "stamp",
-    "steps",
-    "stops",
-    "trapezoid",
-    "triangle",
-    "triangles",
-    "tuned",
-];
+const LATER: [&str; 8] = ["coloured", "contour", "flood", "flow", "hand", "steps", "stops", "tuned"];
 
 /// Whether a name belongs to the language but not to this version.
 pub(super) fn is_later(name: &str) -> bool {

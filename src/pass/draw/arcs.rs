@@ -1,12 +1,12 @@
 //! Arcs about a place on the tile's edge, like scales: the foot of the tile, where the direction of the layer leaves it.
 
 use crate::geom::course::circle;
-use crate::geom::hull::Hull;
 use crate::geom::{Length, Point, Vec2};
 use crate::scene::Hatch;
 
 use super::budget::Exceeded;
 use super::curves::{Course, ROUNDNESS, draw_lines, look};
+use super::cutout::Cutout;
 use super::job::{Job, Layer, Scratch};
 use super::lattice::Lattice;
 use super::lines::spread;
@@ -22,7 +22,7 @@ impl Course for Arcs {
         0.0
     }
 
-    fn range(&self, _area: &Hull, _radius: f64) -> Option<(f64, f64)> {
+    fn range(&self, _area: &Cutout, _radius: f64) -> Option<(f64, f64)> {
         Some((0.0, 0.0))
     }
 
@@ -49,8 +49,8 @@ pub(super) fn draw(
 ) -> Result<(), Exceeded> {
     spread(job, layer, hatch, scratch);
     look(job, layer, scratch);
-    // The outline where the site's own line crosses it; sites of stamps and cells lie inside but for rounding.
-    let (head, foot) = scratch.whole.span(0.0).unwrap_or(scratch.whole.along());
+    // The outline where the site's own line crosses it; sites lie inside but for rounding.
+    let (head, foot) = scratch.curves.whole.along((0.0, 0.0)).unwrap_or(scratch.whole.along());
     let centre = Point::new(foot, 0.0);
     let pitch = hatch.pitch.to_mm();
     let lattice = if job.paint.tone.shape.is_cell() {

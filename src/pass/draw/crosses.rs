@@ -34,12 +34,13 @@ pub(super) fn draw(
 ) -> Result<(), Exceeded> {
     let (lines, along) = interleaved(job, layer, crossing.hatch, crossing.spacing, scratch);
     look(job, layer, scratch);
-    let lines = lines.over(scratch.area.across());
+    let Some(bounds) = scratch.curves.area.bounds() else { return Ok(()) };
+    let lines = lines.over((bounds.min.y, bounds.max.y));
     job.budget.work(lines.count() * LINE as f64)?;
     let cost = 2 * (DOT + if layer.is_clipped { BANK } else { 0 });
     let mut is_backwards = false;
     for (i, v) in lines.places() {
-        let Some(span) = scratch.area.span(v).filter(|_| is_drawn(i, layer.share)) else { continue };
+        let Some(span) = scratch.curves.area.along((v, v)).filter(|_| is_drawn(i, layer.share)) else { continue };
         let row = along.over(span);
         job.budget.work(row.count() * cost as f64)?;
         let count = row.count() as u64;
@@ -66,11 +67,17 @@ fn cross(
 ) -> Result<(), Exceeded> {
     let covers = scratch.covers.len();
     job.budget.look(&mut scratch.looks, covers as u64)?;
-    let hidden = &scratch.curves.hidden[..covers];
-    if !scratch.curves.area.holds(middle) || hidden.iter().any(|cover| cover.holds(middle)) {
+    let page = layer.frame.page(middle.x, middle.y);
+    // Arms do not lie on the frame, where those of a neighbour could lie too.
+    let pen = crossing.hatch.pen.to_mm();
+    let is_hidden = |&cover: &u32| {
+        let reach = job.nearby.radius(cover as usize) + pen;
+        job.sites.points[cover as usize].distance_squared(page) < reach * reach
+            && job.nearby.figure(cover).clearance(page) > -pen
+    };
+    if layer.area.clearance(page) < pen || scratch.covers.iter().any(is_hidden) {
         return Ok(());
     }
-    let page = layer.frame.page(middle.x, middle.y);
     if job.paint.tone.blend == Blend::Contour && job.paint.tone.k.at(page) < f64::from(layer.number) - 0.5 {
         return Ok(());
     }
@@ -78,12 +85,21 @@ fn cross(
     for arm in ARMS {
         let (start, end) = (middle + arm * -half, middle + arm * half);
         let place = |share: f64| 2.0 * half * share - half;
-        let Some((from, to)) = scratch.curves.area.line(start, end) else { continue };
-        scratch.ranges.reset(place(from), place(to));
-        for cover in &scratch.curves.hidden[..covers] {
-            if let Some((from, to)) = cover.line(start, end) {
-                scratch.ranges.subtract(place(from), place(to));
+        let Scratch { ranges, others, curves, .. } = &mut *scratch;
+        others.clear();
+        curves.area.line(start, end, |(from, to)| others.push((place(from), place(to))));
+        others.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        // Pieces of an outline that share a side are one on the arm.
+        others.dedup_by(|next, last| {
+            let touches = next.0 <= last.1 + TOLERANCE;
+            if touches {
+                last.1 = last.1.max(next.1);
             }
+            touches
+        });
+        ranges.set(others);
+        for cover in &curves.hidden[..covers] {
+            cover.line(start, end, |(from, to)| ranges.subtract(place(from), place(to)));
         }
         let along = layer.frame.along * arm.x + layer.frame.along.turned() * arm.y;
         draw_arm(job, crossing, &Frame::new(page, along), layer.is_clipped, scratch, out);

@@ -6,12 +6,12 @@
 
 use crate::field::Node;
 use crate::geom::clip::{Frame, Ranges, TOLERANCE};
-use crate::geom::hull::Hull;
-use crate::geom::{Length, Point, Rect, Vec2, bezier, chain};
+use crate::geom::{Figure, Length, Point, Rect, Vec2, chain};
 use crate::region::FLATTENING;
 use crate::scene::{Blend, Cap, Hatch};
 
 use super::budget::{BANK, CURVE, DRAWN, Exceeded, SAMPLE};
+use super::cutout::Cutout;
 use super::edge::Bank;
 use super::job::{Job, Layer, Scratch as JobScratch};
 use super::lattice::{Lattice, is_drawn};
@@ -37,7 +37,7 @@ pub(super) trait Course: Sync {
     fn reach(&self) -> f64;
 
     /// What of the line at `v` may come into an area: a range along it.
-    fn range(&self, area: &Hull, v: f64) -> Option<(f64, f64)> {
+    fn range(&self, area: &Cutout, v: f64) -> Option<(f64, f64)> {
         area.along((v - self.reach(), v + self.reach()))
     }
 
@@ -53,11 +53,11 @@ pub(super) trait Course: Sync {
 #[derive(Default)]
 pub(super) struct Scratch {
     /// The tile's own outline, over which strokes are spread.
-    pub(super) whole: Hull,
+    pub(super) whole: Cutout,
     /// What is drawn in.
-    pub(super) area: Hull,
+    pub(super) area: Cutout,
     /// What is hidden; the list may be longer than there are covers.
-    pub(super) hidden: Vec<Hull>,
+    pub(super) hidden: Vec<Cutout>,
     /// The stroke at hand.
     pub(super) chain: Vec<Point>,
     /// A seen part of it.
@@ -133,13 +133,13 @@ pub(super) fn trace(
 /// Takes the outlines of the layer and of the tiles that hide parts of it.
 pub(super) fn look(job: &Job<'_>, layer: &Layer<'_>, scratch: &mut JobScratch) {
     let JobScratch { covers, curves, .. } = scratch;
-    curves.whole.set(layer.outline, &layer.frame);
+    curves.whole.set(Figure::convex(layer.outline), &layer.frame);
     curves.area.set(layer.area, &layer.frame);
     if curves.hidden.len() < covers.len() {
-        curves.hidden.resize_with(covers.len(), Hull::default);
+        curves.hidden.resize_with(covers.len(), Cutout::default);
     }
-    for (hull, &cover) in curves.hidden.iter_mut().zip(covers.iter()) {
-        hull.set(job.nearby.outline(cover), &layer.frame);
+    for (hidden, &cover) in curves.hidden.iter_mut().zip(covers.iter()) {
+        hidden.set(job.nearby.figure(cover), &layer.frame);
     }
 }
 
@@ -158,7 +158,7 @@ pub(super) fn stroke(
     if !area.may_meet(&bounds) {
         return Ok(false);
     }
-    cut(chain, area, found);
+    area.cut(chain, 0, found);
     ranges.reset(0.0, chain::count(chain) as f64);
     ranges.intersect(found);
     for cover in &mut hidden[..covers] {
@@ -168,7 +168,7 @@ pub(super) fn stroke(
         job.budget.look(looks, 1)?;
         if cover.may_meet(&bounds) {
             job.budget.look(looks, chain::count(chain) as u64)?;
-            cut(chain, cover, found);
+            cover.cut(chain, 0, found);
             found.iter().for_each(|&(start, end)| ranges.subtract(start, end));
         }
     }
@@ -177,14 +177,6 @@ pub(super) fn stroke(
         clip(job, &layer.frame, hatch, scratch)?;
     }
     emit(job, &layer.frame, hatch, is_backwards, &mut scratch.curves, out)
-}
-
-/// The ranges of a chain that lie in a convex polygon.
-pub(super) fn cut(chain: &[Point], hull: &mut Hull, found: &mut Vec<(f64, f64)>) {
-    found.clear();
-    for (number, cubic) in bezier::cubics(chain).enumerate() {
-        hull.cut(&cubic, number, found);
-    }
 }
 
 /// Keeps the parts of the stroke where the field has this layer, if layers end along the field.
@@ -241,13 +233,13 @@ fn nib(
 
 /// Keeps of some ranges of a chain what something holds for. It is told place and way, and tells whether it holds and how
 /// many millimetres on nothing can change; otherwise it is asked again after `step` millimetres.
-pub(super) fn keep(
+pub(super) fn keep<E>(
     chain: &[Point],
     ranges: &mut Ranges,
     found: &mut Vec<(f64, f64)>,
     step: f64,
-    mut holds: impl FnMut(Point, Vec2) -> Result<(bool, f64), Exceeded>,
-) -> Result<(), Exceeded> {
+    mut holds: impl FnMut(Point, Vec2) -> Result<(bool, f64), E>,
+) -> Result<(), E> {
     found.clear();
     let mut ask = |s: f64| {
         let (place, way) = chain::at(chain, s);
@@ -300,12 +292,6 @@ pub(super) fn emit(
 ) -> Result<bool, Exceeded> {
     let Scratch { chain, ranges, piece, .. } = scratch;
     let end = chain::count(chain) as f64;
-    let list = ranges.as_slice();
-    // A closed stroke that is cut elsewhere runs on through its first point.
-    let is_joined = list.len() > 1
-        && chain.first() == chain.last()
-        && list.first().is_some_and(|range| range.0 == 0.0)
-        && list.last().is_some_and(|range| range.1 == end);
     let before = out.curves.len();
     let mut draw = |ranges: &[(f64, f64)]| -> Result<(), Exceeded> {
         piece.clear();
@@ -322,10 +308,7 @@ pub(super) fn emit(
         }
         Ok(())
     };
-    let (middle, ends) = match list {
-        [first, middle @ .., last] if is_joined => (middle, Some([*last, *first])),
-        list => (list, None),
-    };
+    let (middle, ends) = pieces(chain, ranges.as_slice());
     for i in 0..middle.len() {
         draw(&[middle[if is_backwards { middle.len() - 1 - i } else { i }]])?;
     }
@@ -333,6 +316,18 @@ pub(super) fn emit(
         draw(&ends)?;
     }
     if out.curves.len() > job.budget.limit() { Err(Exceeded::Marks) } else { Ok(out.curves.len() > before) }
+}
+
+/// The ranges of a chain that are strokes by themselves, and the two that are one: a closed chain that is cut elsewhere runs
+/// on through its first point.
+pub(super) fn pieces<'r>(chain: &[Point], ranges: &'r [(f64, f64)]) -> (&'r [(f64, f64)], Option<[(f64, f64); 2]>) {
+    let end = chain::count(chain) as f64;
+    match ranges {
+        [first, middle @ .., last] if chain.first() == chain.last() && first.0 == 0.0 && last.1 == end => {
+            (middle, Some([*last, *first]))
+        }
+        ranges => (ranges, None),
+    }
 }
 
 /// Puts one curved stroke down: a chain in its place on the page.

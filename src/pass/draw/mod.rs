@@ -10,6 +10,7 @@ mod assemble;
 mod budget;
 mod crosses;
 mod curves;
+mod cutout;
 mod dashes;
 mod dots;
 mod edge;
@@ -24,6 +25,7 @@ mod nawaami;
 mod nearby;
 mod palette;
 mod scribble;
+mod silhouette;
 mod solid;
 mod waves;
 

@@ -7,13 +7,13 @@
 
 use crate::geom::clip::{Frame, Profile};
 use crate::geom::course::half_wave;
-use crate::geom::hull::Hull;
 use crate::geom::{Angle, Cubic, Length, Point, chain};
 use crate::scene::{FillKind, Hatch, Paint, Swing};
 
 use super::Stages;
 use super::budget::Exceeded;
 use super::curves::{Course, draw_lines, look};
+use super::cutout::Cutout;
 use super::job::{Job, Layer, Scratch};
 use super::lattice::Lattice;
 use super::lines::spread;
@@ -43,12 +43,12 @@ pub(super) struct Strand {
 
 impl Strand {
     /// The strand of an outline. On cells its axis goes through the site.
-    fn new(whole: &Profile, outline: &Hull, is_cell: bool, swing: &Swing) -> Self {
+    fn new(whole: &Profile, outline: &Cutout, is_cell: bool, swing: &Swing) -> Self {
         let along = whole.along();
         let at = |i: u32| along.0 + (along.1 - along.0) * (f64::from(i) + 0.5) / f64::from(PLACES);
         let middle = (along.0 + along.1) / 2.0;
         let widths: Vec<(f64, (f64, f64))> =
-            (0..PLACES).filter_map(|i| Some((at(i), outline.across((at(i), at(i)))?))).collect();
+            (0..PLACES).filter_map(|i| Some((at(i), outline.across(at(i))?))).collect();
         let count = widths.len().max(1) as f64;
         let mean = widths.iter().map(|(_, (low, high))| high - low).sum::<f64>() / count;
         // The line that is nearest to the widths; the places lie evenly about the middle.
@@ -56,7 +56,7 @@ impl Strand {
         let rise: f64 = widths.iter().map(|(u, (low, high))| (u - middle) * (high - low)).sum();
         let axis =
             if is_cell { 0.0 } else { widths.iter().map(|(_, (low, high))| (low + high) / 2.0).sum::<f64>() / count };
-        let ends = whole.span(axis).unwrap_or(along);
+        let ends = outline.along((axis, axis)).unwrap_or(along);
         let length = ends.1 - ends.0;
         let steepest = (1.0 - NARROWEST) / (length / 2.0);
         let widening = if spread > 0.0 && mean > 0.0 { (rise / spread / mean).clamp(-steepest, steepest) } else { 0.0 };
@@ -90,7 +90,7 @@ impl Course for Strand {
         self.amplitude
     }
 
-    fn range(&self, area: &Hull, _offset: f64) -> Option<(f64, f64)> {
+    fn range(&self, area: &Cutout, _offset: f64) -> Option<(f64, f64)> {
         area.bounds().map(|bounds| (bounds.min.x, bounds.max.x))
     }
 
@@ -154,14 +154,14 @@ pub fn tangents(paint: &Paint, stages: &Stages<'_>) -> Vec<[Angle; 2]> {
         Some(FillKind::Nawaami { swing, .. }) => Some(swing),
         _ => None,
     };
-    let (mut whole, mut outline) = (Profile::default(), Hull::default());
+    let (mut whole, mut outline) = (Profile::default(), Cutout::default());
     (0..tiles.len())
         .map(|tile| {
             let angle = angles.0[tile];
             let Some(swing) = swing.filter(|_| !tiles.outline(tile).is_empty()) else { return [angle; 2] };
             let frame = Frame::new(sites.points[tile], angle.unit());
             whole.set(tiles.outline(tile), &frame);
-            outline.set(tiles.outline(tile), &frame);
+            outline.set(tiles.figure(tile), &frame);
             let strand = Strand::new(&whole, &outline, paint.tone.shape.is_cell(), swing);
             strand.tangents().map(|way| Angle::of(frame.along * way.x + frame.along.turned() * way.y).direction())
         })
