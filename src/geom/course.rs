@@ -15,9 +15,8 @@ const OFF: f64 = 2.73e-4;
 /// The same control points for an eighth: 4 / 3 tan(pi / 16).
 const EIGHTH: f64 = 0.265_216_489_839_544_1;
 
-/// How far the control points of half a loop reach beside it, in its heights: a little less than those of half a circle, whose
-/// are 2 / 3, so that loops are upright.
-const LOOP: f64 = 0.5;
+/// How far the control points of half a loop reach beside it, in its heights: as those of half a circle.
+const LOOP: f64 = 2.0 / 3.0;
 
 /// Half a sine wave from its least value at (0, -amplitude) to its greatest at (length, amplitude).
 #[must_use]
@@ -40,7 +39,8 @@ pub fn half_loop(height: Length, spacing: Length) -> Cubic {
     Cubic([top, top + Vec2::new(fore, 0.0), bottom + Vec2::new(back, 0.0), bottom])
 }
 
-/// How far the control points of a loop lie before its top and before its bottom, in the units of height and spacing.
+/// How far the control points of a loop lie before and after its top, and before and after its bottom, where it runs backwards;
+/// in the unit of height and spacing.
 #[must_use]
 pub fn loop_handles(height: f64, spacing: f64) -> [f64; 2] {
     let drift = spacing / 6.0;

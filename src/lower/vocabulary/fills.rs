@@ -104,8 +104,8 @@ pub(super) const SIGNATURES: &[Signature] = &[
             let hatch = hatch(call, DEFAULT_PEN);
             let pitch = hatch.map_or(DEFAULT_PEN, |hatch| hatch.pitch);
             // Rows of loops reach into each other.
-            let loops = call.positive("loop", Some(pitch * 1.4));
-            let spacing = call.positive("spacing", Some(loops.unwrap_or(pitch) * 0.5));
+            let loops = call.positive("loop", Some(pitch * 1.25));
+            let spacing = call.positive("spacing", Some(loops.unwrap_or(pitch) * 0.9));
             fill(call, FillKind::Scribble { hatch: hatch?, loops: loops?, spacing: spacing? })
         },
     },
@@ -115,7 +115,7 @@ pub(super) const SIGNATURES: &[Signature] = &[
         params: &[PITCH, PEN, WAVELENGTH, AMPLITUDE, INSET, SHORTEST, CAP, INK],
         build: |call| {
             let hatch = hatch(call, DEFAULT_PEN);
-            let swing = swing(call, hatch, 8.0, 0.7);
+            let swing = swing(call, hatch, 16.0, 0.8);
             fill(call, FillKind::Nawaami { hatch: hatch?, swing: swing? })
         },
     },

@@ -1,6 +1,6 @@
 //! Crosses along the hatch lines: two short strokes each, one along the line and one across it.
 //!
-//! A cross is drawn where its middle is seen, and its arms end where the tile does: every one of them still is a cross.
+//! A cross is drawn where its middle is seen, and its arms end where the tile does: on the tile's edge half of it is left.
 
 use crate::geom::clip::{Frame, TOLERANCE};
 use crate::geom::{Length, Point, Vec2};
@@ -68,21 +68,29 @@ fn cross(
     let covers = scratch.covers.len();
     job.budget.look(&mut scratch.looks, covers as u64)?;
     let page = layer.frame.page(middle.x, middle.y);
-    // Arms do not lie on the frame, where those of a neighbour could lie too.
-    let pen = crossing.hatch.pen.to_mm();
     let is_hidden = |&cover: &u32| {
-        let reach = job.nearby.radius(cover as usize) + pen;
+        let reach = job.nearby.radius(cover as usize);
         job.sites.points[cover as usize].distance_squared(page) < reach * reach
-            && job.nearby.figure(cover).clearance(page) > -pen
+            && job.nearby.figure(cover).clearance(page) > 0.0
     };
-    if layer.area.clearance(page) < pen || scratch.covers.iter().any(is_hidden) {
+    let clearance = layer.area.clearance(page);
+    if clearance < -TOLERANCE || scratch.covers.iter().any(is_hidden) {
         return Ok(());
     }
+    // An arm does not lie on the frame, where one of a neighbour could lie too.
+    let pen = crossing.hatch.pen.to_mm();
+    let is_on_frame = |frame: &Frame, half: f64| {
+        clearance < pen && [-half, half].iter().all(|&u| layer.area.clearance(frame.page(u, 0.0)).abs() < pen)
+    };
     if job.paint.tone.blend == Blend::Contour && job.paint.tone.k.at(page) < f64::from(layer.number) - 0.5 {
         return Ok(());
     }
     let half = crossing.size.to_mm() / 2.0;
     for arm in ARMS {
+        let frame = Frame::new(page, layer.frame.along * arm.x + layer.frame.along.turned() * arm.y);
+        if is_on_frame(&frame, half / 2.0) {
+            continue;
+        }
         let (start, end) = (middle + arm * -half, middle + arm * half);
         let place = |share: f64| 2.0 * half * share - half;
         let Scratch { ranges, others, curves, .. } = &mut *scratch;
@@ -101,8 +109,7 @@ fn cross(
         for cover in &curves.hidden[..covers] {
             cover.line(start, end, |(from, to)| ranges.subtract(place(from), place(to)));
         }
-        let along = layer.frame.along * arm.x + layer.frame.along.turned() * arm.y;
-        draw_arm(job, crossing, &Frame::new(page, along), layer.is_clipped, scratch, out);
+        draw_arm(job, crossing, &frame, layer.is_clipped, scratch, out);
     }
     Ok(())
 }
@@ -121,7 +128,11 @@ pub(super) fn draw_arm(
     }
     // Arms that are meant to be short are not too short.
     let shortest = (crossing.hatch.shortest.min(crossing.size).to_mm() - TOLERANCE).max(CRUMB);
-    let left = scratch.ranges.as_slice().iter().find(|(from, to)| *from <= 0.0 && 0.0 <= *to && to - from >= shortest);
+    let left = scratch
+        .ranges
+        .as_slice()
+        .iter()
+        .find(|(from, to)| *from <= TOLERANCE && -TOLERANCE <= *to && to - from >= shortest);
     if let Some(&(from, to)) = left {
         out.lines.push([frame.page(from, 0.0), frame.page(to, 0.0)]);
     }

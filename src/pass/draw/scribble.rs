@@ -9,16 +9,19 @@ use super::curves::Course;
 use super::waves::push;
 
 /// By how much of its height a loop may be higher or lower than the others, at either end.
-const UNEVEN: f64 = 0.28;
+const UNEVEN: f64 = 0.2;
 
 /// By how much of the spacing a loop may lie before or behind its place.
-const JITTER: f64 = 0.35;
+const JITTER: f64 = 0.25;
 
 /// How loops lean forwards: so much of a millimetre for each one upwards.
-const SLANT: f64 = 0.35;
+const SLANT: f64 = 0.22;
+
+/// By how much the ends of loops may rise or fall for what they run on.
+const TILT: f64 = 0.15;
 
 /// How wide a loop may be against the others.
-const WIDTH: f64 = 0.35;
+const WIDTH: f64 = 0.3;
 
 /// One layer of one tile.
 pub(super) struct Scribble {
@@ -45,8 +48,8 @@ impl Scribble {
         let u = self.spacing * (number as f64 / 2.0 + JITTER * own.stray(1)) - SLANT * v;
         let [fore, back] = loop_handles(self.loops, self.spacing);
         let width = 1.0 + WIDTH * own.stray(2);
-        let way = if is_top { fore } else { back } * width;
-        (Point::new(u, v), Vec2::new(way, way * SLANT * own.stray(3)))
+        let way = if is_top { fore } else { -back } * width;
+        (Point::new(u, v), Vec2::new(way, way * TILT * own.stray(3)))
     }
 }
 
