@@ -148,6 +148,9 @@ codes! {
     Hand "hand" "A hand strays too far"
         "Strokes that wander by more than half of the pitch run into each other, and strokes that overshoot by more than the \
          distance of tiles cross their neighbours. The picture is drawn as the scene says."
+    Tiling "tiling" "Cells need a placement that is a tiling"
+        "`cell(...)` draws the cells of a tiling and `link: edges` joins those that share an edge. `grid`, `hex`, \
+         `triangles`, `penrose` and `pinwheel` are tilings. Sites of other placements get cells with `voronoi(...)`."
     NoTiles "no-tiles" "A paint draws nothing"
         "The placement put no tile on the region, which may be smaller than the distance between sites; or there are \
          tiles, but nothing of their fill is left: strokes are shorter than `shortest`, dots do not fit, or later tiles \

@@ -32,6 +32,12 @@ impl Hand {
         pen * (0.5 * (1.0 + self.pen)) + self.overshoot + self.wobble
     }
 
+    /// Whether it does something to the ends of strokes.
+    #[must_use]
+    pub fn has_ends(&self) -> bool {
+        self.taper > 0.0 || self.overshoot > Length::ZERO
+    }
+
     /// Whether it draws what a machine would.
     #[must_use]
     pub fn is_ruled(&self) -> bool {

@@ -31,30 +31,7 @@ const TABLES: [(Option<Kind>, &[Signature]); 8] = [
 ];
 
 /// Names of the language that this version does not draw.
-const LATER: [&str; 22] = [
-    "arcs",
-    "cell",
-    "coloured",
-    "contour",
-    "crosses",
-    "edges",
-    "flood",
-    "flow",
-    "motif",
-    "nawaami",
-    "penrose",
-    "pinwheel",
-    "relaxed",
-    "scribble",
-    "stamp",
-    "steps",
-    "stops",
-    "trapezoid",
-    "triangle",
-    "triangles",
-    "tuned",
-    "waves",
-];
+const LATER: [&str; 7] = ["coloured", "contour", "flood", "flow", "steps", "stops", "tuned"];
 
 /// Whether a name belongs to the language but not to this version.
 pub(super) fn is_later(name: &str) -> bool {

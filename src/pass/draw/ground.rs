@@ -1,27 +1,35 @@
 //! What is drawn where no tile is, before the tiles.
 //!
 //! A fill of its own runs over the whole region, its lines at the exact pitch and measured from the middle of the page, and
-//! is left out under the tiles. `nearest` continues the pattern of every tile over its Voronoi cell. Both end at the
-//! region's outline whatever the tiles do there.
+//! is left out under the tiles. `nearest` continues the pattern of every tile over its Voronoi cell, or of a tiling over
+//! the cell that the tile was drawn in from. Both end at the region's outline whatever the tiles do there.
 
 use rayon::prelude::*;
 
+use crate::geom::bezier::cubics;
 use crate::geom::clip::{Frame, Profile, convex_clearance};
-use crate::geom::{Angle, Length, Point, ring_bounds};
+use crate::geom::{Angle, Length, Point, Vec2, chain, ring_bounds};
 use crate::pass::cut::voronoi::Cells;
 use crate::region::{FillRule, Region};
-use crate::scene::{Canvas, Fill, FillKind, Ground, Hatch};
+use crate::scene::{Canvas, Fill, FillKind, Ground, Hatch, Paint, Shape};
+use crate::stage::{Graph, Sites, Tiling};
 
+use super::arcs::Arcs;
 use super::budget::{BANK, DOT, Exceeded, LINE, PROFILE};
+use super::crosses::{ARMS, Crossing, draw_arm};
+use super::curves::{Course, clip, disc, emit, trace};
 use super::dashes::Dashes;
 use super::dots::{Dot, Dotting, end_row};
 use super::edge::Contact;
-use super::hand::{Bundle, Line, Wander};
+use super::hand::{Bundle, Line, Pull, Wander};
 use super::job::{Job, Piece, Scratch};
 use super::lattice::Lattice;
+use super::motif::Motif;
 use super::palette::Batch;
+use super::scribble::Scribble;
 use super::solid;
 use super::stroke::Stroke;
+use super::waves::Waves;
 
 /// Lines that one thread draws at a time; they also make a bundle.
 const BAND: usize = 64;
@@ -35,19 +43,56 @@ pub(super) fn draw(job: &Job<'_>, canvas: &Canvas) -> Result<Vec<Vec<Batch>>, Ex
     }
 }
 
+/// The areas over which tiles are continued: the cells of their tiling, or the Voronoi cells of their sites.
+pub(super) struct Around<'a> {
+    tiling: Option<&'a Tiling>,
+    cells: Cells<'a>,
+}
+
+impl<'a> Around<'a> {
+    /// `delaunay` links the sites by their triangulation.
+    pub(super) fn new(paint: &Paint, sites: &'a Sites, delaunay: &'a Graph) -> Self {
+        let tiling = match paint.tone.shape {
+            Shape::Cell { .. } => sites.tiling.as_ref(),
+            Shape::Rect { .. }
+            | Shape::Hexagon { .. }
+            | Shape::Triangle { .. }
+            | Shape::Trapezoid { .. }
+            | Shape::Stamp { .. }
+            | Shape::Voronoi { .. } => None,
+        };
+        Self { tiling, cells: Cells::new(sites, delaunay, Length::ZERO, Length::ZERO) }
+    }
+
+    /// Writes the area of a tile; `spare` is overwritten.
+    pub(super) fn outline(&self, tile: usize, area: &mut Vec<Point>, spare: &mut Vec<Point>) {
+        match self.tiling {
+            Some(tiling) => {
+                area.clear();
+                area.extend_from_slice(tiling.cell(tile));
+            }
+            None => self.cells.outline(tile, area, spare),
+        }
+    }
+}
+
 /// Hatches the gaps as the nearest tile is hatched. Tiles that are left out at the region's edge have gaps too.
 fn nearest(job: &Job<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
-    let cells = Cells::new(job.sites, job.graph, Length::ZERO, Length::ZERO);
+    let Some(around) = job.around else { return Ok(Vec::new()) };
+    let hand = &job.paint.tone.hand;
     let hatches = job.paint.tone.fill.iter().filter_map(|fill| fill.kind.hatch());
-    let margin = hatches.map(|hatch| job.paint.tone.hand.reach(hatch.pen).to_mm()).fold(0.0, f64::max);
+    let margin = hatches.map(|hatch| hand.reach(hatch.pen).to_mm()).fold(0.0, f64::max);
     job.in_chunks(|scratch, tile, out| {
         let outline = job.tiles.outline(tile);
         if job.tiles.layers[tile].is_blank() || outline.is_empty() {
             return Ok(());
         }
         let (mut cell, mut spare) = (Vec::new(), Vec::new());
-        cells.outline(tile, &mut cell, &mut spare);
-        let is_gapless = job.tiles.is_drawn(tile) && cell.iter().all(|&p| convex_clearance(outline, p) >= 0.0);
+        around.outline(tile, &mut cell, &mut spare);
+        // Of an outline that is not convex corners alone do not tell.
+        let is_gapless = job.tiles.is_drawn(tile)
+            && job.tiles.figure(tile).is_convex()
+            && cell.iter().all(|&p| convex_clearance(outline, p) >= 0.0);
         let contact = job.bank.standing(ring_bounds(&cell).grown(margin));
         if is_gapless || contact == Contact::Outside {
             return Ok(());
@@ -58,7 +103,8 @@ fn nearest(job: &Job<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
         job.budget.look(&mut scratch.looks, job.nearby.candidates(site, reach))?;
         job.nearby.near(site, reach, |other| scratch.covers.push(other));
         let (beyond, is_clipped) = (Some(cell.as_slice()), contact == Contact::Crossing);
-        job.draw_layers(&Piece { tile, beyond, is_clipped, partner: Some(outline) }, scratch, out)
+        let partner = hand.has_ends().then(|| job.tiles.figure(tile));
+        job.draw_layers(&Piece { tile, beyond, is_clipped, partner }, scratch, out)
     })
 }
 
@@ -73,6 +119,18 @@ fn even(job: &Job<'_>, canvas: &Canvas, fill: &Fill, angle: Angle) -> Result<Vec
         FillKind::Lines(hatch) => plane.lines(hatch, None),
         FillKind::Dashes { hatch, dash, gap } => plane.lines(hatch, Some(&Dashes::new(*dash, *gap))),
         FillKind::Dots { hatch, spacing, radius } => plane.dots(&Dotting::new(hatch, *spacing, *radius)),
+        FillKind::Crosses { hatch, spacing, size } => {
+            plane.crosses(&Crossing { hatch, spacing: *spacing, size: *size })
+        }
+        FillKind::Arcs(hatch) => plane.curves(hatch, &Arcs { centre: Point::default() }, plane.rings()),
+        FillKind::Waves { hatch, swing } | FillKind::Nawaami { hatch, swing } => {
+            plane.curves(hatch, &Waves::new(swing), plane.region.across())
+        }
+        FillKind::Scribble { hatch, loops, spacing } => {
+            let scribble = Scribble::new(job.paint, usize::MAX, 0, *loops, *spacing);
+            plane.curves(hatch, &scribble, plane.region.across())
+        }
+        FillKind::Motif { hatch, spacing, figure } => plane.motif(&Motif { hatch, spacing: *spacing, figure }),
         FillKind::Solid => {
             let drawn = (0..job.tiles.len()).filter(|&tile| job.tiles.is_drawn(tile));
             let outlines = drawn.map(|tile| job.tiles.outline(tile).to_vec()).collect();
@@ -100,9 +158,10 @@ impl Plane<'_> {
     fn in_bands(
         &self,
         pitch: Length,
+        across: (f64, f64),
         draw: impl Fn(&mut Scratch, &[(i64, f64)], &mut [Batch]) -> Result<(), Exceeded> + Sync,
     ) -> Result<Vec<Vec<Batch>>, Exceeded> {
-        let lattice = Lattice::cell(self.region.across(), 0.0, pitch.to_mm());
+        let lattice = Lattice::cell(across, 0.0, pitch.to_mm());
         self.job.budget.work(lattice.count() * (LINE + BANK) as f64)?;
         if lattice.count() > self.job.budget.limit() as f64 {
             return Err(Exceeded::Marks);
@@ -125,11 +184,21 @@ impl Plane<'_> {
             .collect()
     }
 
+    /// How far a mark lies off its place along its line in millimetres.
+    fn shift_along(&self, number: i64, mark: i64, step: f64) -> f64 {
+        self.bundle.map_or(0.0, |bundle| bundle.shift_along(number, mark, step))
+    }
+
+    /// How a line wanders.
+    fn wander(&self, number: i64) -> Wander {
+        let (start, end) = self.region.along();
+        self.bundle.map_or(Wander::NONE, |bundle| bundle.wander(number, end - start))
+    }
+
     fn lines(&self, hatch: &Hatch, dashes: Option<&Dashes>) -> Result<Vec<Vec<Batch>>, Exceeded> {
         let ranges = self.tile_ranges();
         let along = self.region.along();
-        let bundle = self.bundle.as_ref();
-        self.in_bands(hatch.pitch, |scratch, band, out| {
+        self.in_bands(hatch.pitch, self.region.across(), |scratch, band, out| {
             let hidden = self.hidden(band, &ranges, scratch)?;
             for (&(number, v), mut hidden) in band.iter().zip(hidden) {
                 // From the end to the start, so that what is left lies as one range before each.
@@ -138,11 +207,11 @@ impl Plane<'_> {
                 for (start, end) in hidden {
                     scratch.ranges.subtract(start, end);
                 }
-                let wander = bundle.map_or(Wander::NONE, |bundle| bundle.wander(number, along.1 - along.0));
+                let wander = self.wander(number);
                 let line = Line { wander, ..Line::ruled(&self.frame, number, v) };
-                let stroke = Stroke::new(line, bundle, hatch, along, number.rem_euclid(2) == 1);
-                self.job.bank.clip(&self.frame, v, stroke.nib(hatch), &mut scratch.ranges, &mut scratch.edge);
-                stroke.emit(self.job, hatch, dashes, scratch, out)?;
+                let stroke = Stroke::new(line, self.bundle.as_ref(), hatch, number.rem_euclid(2) == 1);
+                self.job.bank.clip(&self.frame, v, stroke.nib(), &mut scratch.ranges, &mut scratch.edge);
+                stroke.emit(self.job, dashes, scratch, out)?;
             }
             Ok(())
         })
@@ -154,7 +223,7 @@ impl Plane<'_> {
         if count * (DOT + BANK) as f64 > self.job.budget.most_work() as f64 {
             return Err(Exceeded::Places { what: "dots of ground", count: count as u64 });
         }
-        self.in_bands(dotting.hatch.pitch, |scratch, band, out| {
+        self.in_bands(dotting.hatch.pitch, self.region.across(), |scratch, band, out| {
             for &(number, v) in band {
                 self.job.budget.work(row.count() * (DOT + BANK) as f64)?;
                 let starts: Vec<usize> = out.iter().map(|batch| batch.dots.len()).collect();
@@ -171,6 +240,136 @@ impl Plane<'_> {
         })
     }
 
+    /// The range of radii about the frame's origin that come into the box around the region.
+    fn rings(&self) -> (f64, f64) {
+        let ((left, right), (top, bottom)) = (self.region.along(), self.region.across());
+        let away = |(low, high): (f64, f64)| (low.max(-high).max(0.0), high.max(-low));
+        let ((near_u, far_u), (near_v, far_v)) = (away((left, right)), away((top, bottom)));
+        (Vec2::new(near_u, near_v).length(), Vec2::new(far_u, far_v).length())
+    }
+
+    fn curves(
+        &self,
+        hatch: &Hatch,
+        course: &impl Course,
+        (low, high): (f64, f64),
+    ) -> Result<Vec<Vec<Batch>>, Exceeded> {
+        let along = self.region.along();
+        let reach = course.reach();
+        self.in_bands(hatch.pitch, (low - reach, high + reach), |scratch, band, out| {
+            for &line in band {
+                trace(self.job, course, line, along, &mut scratch.curves.chain)?;
+                self.wander(line.0).bend(&mut scratch.curves.chain);
+                let pull = Pull::line(self.bundle.as_ref(), hatch, line.0);
+                self.stroke(&pull, line.0.rem_euclid(2) == 1, scratch, out)?;
+            }
+            Ok(())
+        })
+    }
+
+    fn motif(&self, motif: &Motif<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
+        let (reach, cost) = (motif.reach(), motif.cost());
+        let grown = |(low, high): (f64, f64)| (low - reach, high + reach);
+        let row = Lattice::cell(grown(self.region.along()), 0.0, motif.spacing.to_mm());
+        self.in_bands(motif.hatch.pitch, grown(self.region.across()), |scratch, band, out| {
+            for &(number, v) in band {
+                self.job.budget.work(row.count() * (cost + BANK) as f64)?;
+                for (mark, u) in row.places() {
+                    let pull = Pull::mark(self.bundle.as_ref(), motif.hatch, number, mark);
+                    let u = u + self.shift_along(number, mark, row.step());
+                    for strokes in motif.figure.0.iter() {
+                        scratch.curves.chain.clear();
+                        scratch.curves.chain.extend(strokes.iter().map(|&p| p + Vec2::new(u, v)));
+                        self.stroke(&pull, false, scratch, out)?;
+                    }
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// Draws what no tile lies on of the stroke in `scratch`.
+    fn stroke(
+        &self,
+        pull: &Pull,
+        is_backwards: bool,
+        scratch: &mut Scratch,
+        out: &mut [Batch],
+    ) -> Result<(), Exceeded> {
+        let Scratch { curves, looks, .. } = scratch;
+        curves.ranges.reset(0.0, chain::count(&curves.chain) as f64);
+        let region = self.job.bank.region().bounds();
+        for (number, cubic) in cubics(&curves.chain).enumerate() {
+            let page = cubic.map(|p| self.frame.page(p.x, p.y)).bounds();
+            if !page.touches(&region) {
+                curves.ranges.subtract(number as f64, number as f64 + 1.0);
+                continue;
+            }
+            let (middle, within) = disc(&page);
+            self.job.budget.look(looks, self.job.nearby.candidates(middle, within) * PROFILE)?;
+            let (ranges, cutout, found) = (&mut curves.ranges, &mut curves.area, &mut curves.found);
+            self.job.nearby.near(middle, within, |tile| {
+                cutout.set(self.job.nearby.figure(tile), &self.frame);
+                cutout.cut(&cubic.0, number, found);
+                found.iter().for_each(|&(start, end)| ranges.subtract(start, end));
+            });
+        }
+        clip(self.job, &self.frame, &pull.hatch, scratch)?;
+        emit(self.job, &self.frame, pull, is_backwards, &mut scratch.curves, out)?;
+        Ok(())
+    }
+
+    fn crosses(&self, crossing: &Crossing<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
+        let row = Lattice::cell(self.region.along(), 0.0, crossing.spacing.to_mm());
+        self.in_bands(crossing.hatch.pitch, self.region.across(), |scratch, band, out| {
+            for &(number, v) in band {
+                self.job.budget.work(row.count() * (DOT + BANK) as f64)?;
+                let starts: Vec<usize> = out.iter().map(|batch| batch.lines.len()).collect();
+                for (mark, u) in row.places() {
+                    let pull = Pull::mark(self.bundle.as_ref(), crossing.hatch, number, mark);
+                    let crossing = Crossing { hatch: &pull.hatch, ..*crossing };
+                    let middle = self.frame.page(u + self.shift_along(number, mark, row.step()), v);
+                    self.cross(&crossing, middle, scratch, &mut out[pull.weight])?;
+                }
+                for (batch, start) in out.iter_mut().zip(starts) {
+                    if number.rem_euclid(2) == 1 {
+                        batch.lines[start..].reverse();
+                    }
+                    if batch.lines.len() > self.job.budget.limit() {
+                        return Err(Exceeded::Marks);
+                    }
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// Draws a cross whose middle lies in the region and on no tile.
+    fn cross(
+        &self,
+        crossing: &Crossing<'_>,
+        middle: Point,
+        scratch: &mut Scratch,
+        out: &mut Batch,
+    ) -> Result<(), Exceeded> {
+        if !self.job.bank.region().contains(middle) {
+            return Ok(());
+        }
+        let half = crossing.size.to_mm() / 2.0;
+        self.job.budget.look(&mut scratch.looks, self.job.nearby.candidates(middle, half) * PROFILE)?;
+        for arm in ARMS {
+            let frame = Frame::new(middle, self.frame.along * arm.x + self.frame.along.turned() * arm.y);
+            scratch.ranges.reset(-half, half);
+            let Scratch { ranges, area, .. } = scratch;
+            self.job.nearby.near(middle, half, |tile| {
+                area.set(self.job.nearby.figure(tile), &frame);
+                area.spans(&0.0, |(start, end)| ranges.subtract(start, end));
+            });
+            draw_arm(self.job, crossing, &frame, true, scratch, out);
+        }
+        Ok(())
+    }
+
     /// Whether a dot lies in the region and clear of all tiles.
     fn is_free(&self, centre: Point, radius: f64, scratch: &mut Scratch) -> Result<bool, Exceeded> {
         if !self.job.bank.holds_disc(centre, radius) {
@@ -179,7 +378,7 @@ impl Plane<'_> {
         self.job.budget.look(&mut scratch.looks, self.job.nearby.candidates(centre, radius))?;
         let mut is_free = true;
         self.job.nearby.near(centre, radius, |tile| {
-            is_free = is_free && convex_clearance(self.job.nearby.outline(tile), centre) <= -radius;
+            is_free = is_free && self.job.nearby.figure(tile).clearance(centre) <= -radius;
         });
         Ok(is_free)
     }
@@ -212,10 +411,10 @@ impl Plane<'_> {
             if high < first.1 || low > last.1 {
                 continue;
             }
-            scratch.area.set(self.job.nearby.outline(tile), &self.frame);
+            scratch.area.set(self.job.nearby.figure(tile), &self.frame);
             let start = band.partition_point(|line| line.1 < low);
             for (line, hidden) in band.iter().zip(&mut hidden).skip(start).take_while(|(line, _)| line.1 <= high) {
-                hidden.extend(scratch.area.span(line.1));
+                scratch.area.spans(&line.1, |span| hidden.push(span));
                 scratch.looks += 1;
             }
             self.job.budget.look(&mut scratch.looks, PROFILE)?;

@@ -6,7 +6,9 @@
 use crate::geom::clip::{Frame, Profile};
 use crate::geom::{Angle, Length, Point};
 use crate::random::{Key, Table};
-use crate::scene::{Hand, Paint};
+use crate::scene::{Hand, Hatch, Paint};
+
+use super::silhouette::Meet;
 
 /// How many widths the strokes of a pen have where the hand changes it: marks are grouped by their width.
 pub(super) const WEIGHTS: usize = 17;
@@ -36,6 +38,9 @@ const STEEPEST: f64 = 3.0;
 /// Along a stroke that runs out, measured from its tip: the share of the way, and the share of the full width there. A nib
 /// that is lifted narrows slowly at first.
 const TIP: [(f64, f64); 3] = [(0.0, 0.0), (0.35, 0.5), (1.0, 1.0)];
+
+/// Differences of less mean nothing in shares of a width.
+const ROUNDING: f64 = 1e-9;
 
 /// The least share of the taper that a stroke's own may be.
 const LEAST_TAPER: f64 = 0.7;
@@ -180,6 +185,42 @@ fn turned(frame: &Frame, by: Angle) -> Frame {
     Frame::new(frame.origin, frame.along * turn.x + frame.along.turned() * turn.y)
 }
 
+/// How one stroke or mark of a hatch is drawn.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pull {
+    /// The hatch, with the stroke's own width.
+    pub(super) hatch: Hatch,
+    /// Its place among the weights of its pen.
+    pub(super) weight: usize,
+    pub(super) taper: Option<Taper>,
+    /// How far it runs beyond both its ends in millimetres.
+    pub(super) over: (f64, f64),
+}
+
+impl Pull {
+    /// The stroke along a line.
+    pub(super) fn line(bundle: Option<&Bundle>, hatch: &Hatch, number: i64) -> Self {
+        let Some(bundle) = bundle else { return Self::ruled(hatch) };
+        let (taper, over) = (bundle.taper(number), bundle.overshoots(number));
+        Self { taper, over, ..Self::weighed(bundle, hatch, bundle.weight(number)) }
+    }
+
+    /// A mark on a line, which is whole in itself and overshoots nothing.
+    pub(super) fn mark(bundle: Option<&Bundle>, hatch: &Hatch, number: i64, mark: i64) -> Self {
+        let Some(bundle) = bundle else { return Self::ruled(hatch) };
+        Self::weighed(bundle, hatch, bundle.weight_of(number, mark))
+    }
+
+    fn weighed(bundle: &Bundle, hatch: &Hatch, weight: usize) -> Self {
+        let pen = weighed(hatch.pen, &bundle.hand, weight);
+        Self { hatch: Hatch { pen, ..*hatch }, weight, taper: None, over: (0.0, 0.0) }
+    }
+
+    fn ruled(hatch: &Hatch) -> Self {
+        Self { hatch: *hatch, weight: 0, taper: None, over: (0.0, 0.0) }
+    }
+}
+
 /// A line that strokes are drawn along.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line {
@@ -198,8 +239,17 @@ impl Line {
         Self { frame: *frame, number, v, wander: Wander::NONE }
     }
 
-    /// Where it lies in a polygon.
-    pub(super) fn meet(&self, profile: &Profile) -> Option<(f64, f64)> {
+    /// A place along it on the page.
+    pub(super) fn page(&self, u: f64) -> Point {
+        if self.wander.is_none() {
+            return self.frame.page(u, self.v);
+        }
+        self.frame.page(u, self.v + self.wander.at(u).0)
+    }
+}
+
+impl Meet for Line {
+    fn meet(&self, profile: &Profile) -> Option<(f64, f64)> {
         let (start, end) = profile.span(self.v)?;
         if self.wander.is_none() {
             return Some((start, end));
@@ -208,14 +258,6 @@ impl Line {
         let near = |u: f64| profile.span(self.v + self.wander.at(u).0).unwrap_or((start, end));
         let (start, end) = (near(start).0, near(end).1);
         (start < end).then_some((start, end))
-    }
-
-    /// A place along it on the page.
-    pub(super) fn page(&self, u: f64) -> Point {
-        if self.wander.is_none() {
-            return self.frame.page(u, self.v);
-        }
-        self.frame.page(u, self.v + self.wander.at(u).0)
     }
 }
 
@@ -229,33 +271,45 @@ pub(super) struct Taper {
 }
 
 impl Taper {
-    /// Calls `visit` with the places between `from` and `to` where the width of a stroke over `whole` begins to change in
-    /// another way, in any order.
-    pub(super) fn joints(&self, whole: (f64, f64), (from, to): (f64, f64), mut visit: impl FnMut(f64)) {
+    /// The taper of a stroke from one place to another.
+    pub(super) fn over(self, whole: (f64, f64)) -> RunOut {
         let length = self.share * (whole.1 - whole.0);
+        if self.is_at_start { RunOut { tip: whole.0, length } } else { RunOut { tip: whole.1, length: -length } }
+    }
+}
+
+/// How the width of one stroke runs out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct RunOut {
+    /// Where the width is nothing, as a place along the stroke.
+    tip: f64,
+    /// From there to where it is full; negative where that is nearer to the stroke's start.
+    length: f64,
+}
+
+impl RunOut {
+    /// Calls `visit` with the places between two others where the width begins to change in another way, in any order.
+    pub(super) fn joints(&self, (from, to): (f64, f64), mut visit: impl FnMut(f64)) {
         for (way, _) in TIP {
-            let u = if self.is_at_start { whole.0 + way * length } else { whole.1 - way * length };
+            let u = self.tip + way * self.length;
             if from < u && u < to {
                 visit(u);
             }
         }
     }
 
-    /// The share of the full width at a place along a stroke over `whole`.
-    pub(super) fn at(&self, whole: (f64, f64), u: f64) -> f64 {
-        let length = self.share * (whole.1 - whole.0);
-        let way = if self.is_at_start { u - whole.0 } else { whole.1 - u };
-        // Joints lie where rounding puts them: what is all but full is full.
-        let way = way / length + 1e-9;
-        if way >= 1.0 {
+    /// The share of the full width at a place.
+    pub(super) fn at(&self, u: f64) -> f64 {
+        // Joints lie where rounding puts them: what is all but full is full, and what is all but nothing is nothing.
+        let way = (u - self.tip) / self.length;
+        if way > 1.0 - ROUNDING {
             return 1.0;
         }
-        let pieces = TIP.iter().zip(&TIP[1..]);
+        let mut pieces = TIP.iter().zip(&TIP[1..]);
         let width = pieces
-            .clone()
             .find(|(_, end)| way < end.0)
-            .map(|(start, end)| start.1 + (end.1 - start.1) * (way - start.0) / (end.0 - start.0));
-        width.unwrap_or(1.0).clamp(0.0, 1.0)
+            .map_or(1.0, |(start, end)| start.1 + (end.1 - start.1) * (way - start.0) / (end.0 - start.0));
+        if width < ROUNDING { 0.0 } else { width }
     }
 }
 
@@ -299,7 +353,8 @@ impl Wander {
         let t = place - first;
         let knot = |i: i64| {
             let place = first as i64 + i;
-            SHARED * self.shared.stray(place) + (1.0 - SHARED) * self.own.stray(place)
+            let even = |table: Table| 2.0 * table.unit(place) - 1.0;
+            SHARED * even(self.shared) + (1.0 - SHARED) * even(self.own)
         };
         let [a, b, c, d] = [knot(-1), knot(0), knot(1), knot(2)];
         // The cubic through b and c whose slopes there are those of the lines from a to c and from b to d.
@@ -309,6 +364,20 @@ impl Wander {
         let offset = b + t * (m + t * (cube * t - square));
         let slope = m + t * (3.0 * cube * t - 2.0 * square);
         (scale * offset, scale * slope / self.wave)
+    }
+
+    /// Makes a chain of Béziers wander, as smooth as it is.
+    pub(super) fn bend(&self, chain: &mut [Point]) {
+        if self.is_none() {
+            return;
+        }
+        for joint in (0..chain.len()).step_by(3) {
+            let place = chain[joint];
+            let (offset, slope) = self.at(place.x);
+            for i in joint.saturating_sub(1)..(joint + 2).min(chain.len()) {
+                chain[i].y += offset + slope * (chain[i].x - place.x);
+            }
+        }
     }
 
     /// Calls `visit` with the places between two others where one cubic ends and the next begins, in order.

@@ -5,7 +5,7 @@
 
 use crate::field::Node;
 use crate::geom::Length;
-use crate::geom::clip::{Frame, Profile};
+use crate::geom::clip::Frame;
 use crate::scene::{Blend, Hatch};
 
 use super::budget::{BANK, Exceeded, LINE, PROFILE, SAMPLE};
@@ -14,6 +14,7 @@ use super::hand::Line;
 use super::job::{Job, Layer, Scratch};
 use super::lattice::{Lattice, is_drawn};
 use super::palette::Batch;
+use super::silhouette::Silhouette;
 use super::stroke::Stroke;
 
 /// Halvings in the search for the place where a layer ends along the field: from a tenth of a millimetre to a millionth.
@@ -28,55 +29,55 @@ pub(super) fn draw(
     scratch: &mut Scratch,
     out: &mut [Batch],
 ) -> Result<(), Exceeded> {
-    let (lattice, frame, length) = spread(job, layer, hatch, scratch);
+    let lattice = spread(job, layer, hatch, scratch);
     job.budget.work(lattice.count() * LINE as f64)?;
-    set_shadows(job, layer, &frame, scratch);
+    set_shadows(job, layer, &layer.frame, scratch);
+    let length = scratch.whole.along().1 - scratch.whole.along().0;
     let bundle = layer.bundle.as_ref();
     let mut is_backwards = false;
     for (i, v) in lattice.places() {
         if !is_drawn(i, layer.share) {
             continue;
         }
-        let line = bundle
-            .map_or_else(|| Line::ruled(&frame, i, v), |bundle| bundle.line(&frame, (i, v), lattice.step(), length));
-        if line.frame != frame {
+        let line = bundle.map_or_else(
+            || Line::ruled(&layer.frame, i, v),
+            |bundle| bundle.line(&layer.frame, (i, v), lattice.step(), length),
+        );
+        if line.frame != layer.frame {
             job.budget.look(&mut scratch.looks, PROFILE * (1 + scratch.covers.len() as u64))?;
             scratch.area.set(layer.area, &line.frame);
             set_shadows(job, layer, &line.frame, scratch);
         }
-        let Some(whole) = ends(layer, &line, scratch) else { continue };
+        ends(layer, &line, scratch);
         let mut looks = 0;
         for shadow in &scratch.shadows[..scratch.covers.len()] {
             if scratch.ranges.is_empty() {
                 break;
             }
             looks += 1;
-            if let Some((start, end)) = line.meet(shadow) {
-                scratch.ranges.subtract(start, end);
-            }
+            let ranges = &mut scratch.ranges;
+            shadow.spans(&line, |(start, end)| ranges.subtract(start, end));
         }
         job.budget.look(&mut scratch.looks, looks)?;
         contour(job, layer, &line, hatch.pitch, scratch)?;
-        let stroke = Stroke::new(line, bundle, hatch, whole, is_backwards);
+        let stroke = Stroke::new(line, bundle, hatch, is_backwards);
         if layer.is_clipped && !scratch.ranges.is_empty() {
             job.budget.look(&mut scratch.looks, BANK)?;
-            job.bank.clip(&line.frame, line.v, stroke.nib(hatch), &mut scratch.ranges, &mut scratch.edge);
+            job.bank.clip(&line.frame, line.v, stroke.nib(), &mut scratch.ranges, &mut scratch.edge);
         }
         if scratch.ranges.is_empty() {
             continue;
         }
-        stroke.emit(job, hatch, dashes, scratch, out)?;
+        stroke.emit(job, dashes, scratch, out)?;
         is_backwards = !is_backwards;
     }
     Ok(())
 }
 
-/// Takes the profiles of the layer and spreads lines over it. The frame that the hand turns them to and the length of the
-/// tile along its own are given back as well.
-pub(super) fn spread(job: &Job<'_>, layer: &Layer<'_>, hatch: &Hatch, scratch: &mut Scratch) -> (Lattice, Frame, f64) {
-    scratch.whole.set(layer.outline, &layer.frame);
-    let frame = layer.bundle.as_ref().map_or(layer.frame, |bundle| bundle.turned(&layer.frame));
-    scratch.area.set(layer.area, &frame);
+/// Takes the silhouettes of the layer and spreads lines over it. How the hand turns them makes no difference to their number.
+pub(super) fn spread(job: &Job<'_>, layer: &Layer<'_>, hatch: &Hatch, scratch: &mut Scratch) -> Lattice {
+    scratch.whole.set(layer.outline, &layer.unturned);
+    scratch.area.set(layer.area, &layer.frame);
     let pitch = hatch.pitch.to_mm();
     let (low, high) = scratch.whole.across();
     let lattice = if job.paint.tone.shape.is_cell() {
@@ -84,46 +85,106 @@ pub(super) fn spread(job: &Job<'_>, layer: &Layer<'_>, hatch: &Hatch, scratch: &
     } else {
         Lattice::stamp((low, high), pitch, hatch.inset, layer.number)
     };
-    let along = scratch.whole.along();
-    let length = along.1 - along.0;
-    let lattice = if layer.is_continued { lattice.over(scratch.area.across()) } else { lattice };
-    (lattice, frame, length)
+    if layer.is_continued { lattice.over(scratch.area.across()) } else { lattice }
 }
 
-/// Takes the profiles of what strokes run on into and of the tiles that hide parts of them, along a frame.
+/// Where lines lie, and marks along them, so that no mark falls on one of an earlier layer.
+///
+/// All layers stand on one lattice of half the pitch and half the spacing, turned with the tile, of which each takes a
+/// quarter: the second the middles of the first one's fields, the third and fourth the middles of their sides. The second
+/// layer makes the marks of the first denser by the square root of two and turns their lattice by 45 degrees, where pitch
+/// and spacing are equal; with the fourth it is square again, at half the distance. Tone grows evenly with every layer.
+pub(super) fn interleaved(
+    job: &Job<'_>,
+    layer: &Layer<'_>,
+    hatch: &Hatch,
+    spacing: Length,
+    scratch: &mut Scratch,
+) -> (Lattice, Lattice) {
+    let lines = spread(job, layer, hatch, scratch);
+    let along = scratch.whole.along();
+    let row = if job.paint.tone.shape.is_cell() {
+        Lattice::cell(along, 0.0, spacing.to_mm())
+    } else {
+        Lattice::stamp(along, spacing.to_mm(), 0.5, 1)
+    };
+    match layer.number {
+        0 | 1 => (lines, row),
+        2 => (lines.moved(0.5), row.moved(0.5)),
+        3 => (lines, row.moved(0.5)),
+        _ => (lines.moved(0.5), row),
+    }
+}
+
+/// Takes the silhouettes of what strokes run on into and of the tiles that hide parts of them, along a frame.
 fn set_shadows(job: &Job<'_>, layer: &Layer<'_>, frame: &Frame, scratch: &mut Scratch) {
     if let Some(partner) = layer.partner {
         scratch.partner.set(partner, frame);
     }
     let count = scratch.covers.len();
     if scratch.shadows.len() < count {
-        scratch.shadows.resize_with(count, Profile::default);
+        scratch.shadows.resize_with(count, Silhouette::default);
     }
     for (shadow, &cover) in scratch.shadows.iter_mut().zip(&scratch.covers) {
-        shadow.set(job.nearby.outline(cover), frame);
+        shadow.set(job.nearby.figure(cover), frame);
     }
 }
 
-/// Leaves in `scratch.ranges` what the area has of a line. From where to where the stroke along it is drawn in one go is
-/// given back: where the ground continues tiles, a stroke ends at the farther one of the tile's edge and its cell's.
-fn ends(layer: &Layer<'_>, line: &Line, scratch: &mut Scratch) -> Option<(f64, f64)> {
-    let own = line.meet(&scratch.area)?;
-    scratch.ranges.reset(own.0, own.1);
-    let Some(bundle) = &layer.bundle else { return Some(own) };
-    let partner = layer.partner.and_then(|_| line.meet(&scratch.partner));
-    let (tile, cell) = match (layer.is_continued, partner) {
-        (false, partner) => (own, partner.unwrap_or(own)),
+/// Leaves in `scratch.ranges` what the area has of a line, and in `scratch.wholes` from where to where the strokes along it
+/// are drawn in one go, whatever hides parts of them. Where the ground continues tiles, a stroke ends at the farther one of
+/// the tile's edge and its cell's.
+fn ends(layer: &Layer<'_>, line: &Line, scratch: &mut Scratch) {
+    let Scratch { area, partner, ranges, others, wholes, .. } = scratch;
+    area.ranges(line, others);
+    wholes.clear();
+    wholes.extend_from_slice(others);
+    let (Some(bundle), Some(&first), Some(&last)) = (&layer.bundle, others.first(), others.last()) else {
+        ranges.set(others);
+        return;
+    };
+    let over = bundle.overshoots(line.number);
+    if layer.partner.is_none() {
+        // Neighbours that overshoot into each other are one.
+        wholes.iter_mut().for_each(|whole| *whole = (whole.0 - over.0, whole.1 + over.1));
+        wholes.dedup_by(|next, whole| {
+            let touches = next.0 <= whole.1;
+            if touches {
+                whole.1 = next.1;
+            }
+            touches
+        });
+        ranges.set(wholes);
+        return;
+    }
+    let own = (first.0, last.1);
+    let mut other: Option<(f64, f64)> = None;
+    partner.spans(line, |(start, end)| {
+        other = Some(other.map_or((start, end), |other| (other.0.min(start), other.1.max(end))));
+    });
+    let (tile, cell) = match (layer.is_continued, other) {
+        (false, other) => (own, other.unwrap_or(own)),
         (true, Some(tile)) => (tile, own),
-        (true, None) => return Some(own),
+        (true, None) => {
+            ranges.set(others);
+            return;
+        }
     };
     // Beyond a tile's edge its strokes overshoot, beyond a cell's they do not.
-    let over = bundle.overshoots(line.number);
-    let start = if cell.0 < tile.0 { cell.0 } else { tile.0 - over.0 };
-    let end = if cell.1 > tile.1 { cell.1 } else { tile.1 + over.1 };
+    let whole = (
+        if cell.0 < tile.0 { cell.0 } else { tile.0 - over.0 },
+        if cell.1 > tile.1 { cell.1 } else { tile.1 + over.1 },
+    );
+    wholes.clear();
+    wholes.push(whole);
     if !layer.is_continued {
-        scratch.ranges.reset(if cell.0 < tile.0 { own.0 } else { start }, if cell.1 > tile.1 { own.1 } else { end });
+        if let Some(first) = others.first_mut().filter(|_| cell.0 >= tile.0) {
+            first.0 = whole.0;
+        }
+        if let Some(last) = others.last_mut().filter(|_| cell.1 <= tile.1) {
+            last.1 = whole.1;
+        }
     }
-    Some((start, end))
+    ranges.set(others);
 }
 
 /// Keeps the parts of a line where the field has this layer, if layers end along the field.

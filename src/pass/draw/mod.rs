@@ -5,8 +5,12 @@
 //! order of their sites, so that the drawing does not depend on threads. [`Assembly`] lays paints and outlines over each
 //! other.
 
+mod arcs;
 mod assemble;
 mod budget;
+mod crosses;
+mod curves;
+mod cutout;
 mod dashes;
 mod dots;
 mod edge;
@@ -17,26 +21,33 @@ mod job;
 mod knockout;
 mod lattice;
 mod lines;
+mod motif;
+mod nawaami;
 mod nearby;
 mod palette;
+mod run;
+mod scribble;
+mod silhouette;
 mod solid;
 mod stroke;
+mod waves;
 
 #[cfg(test)]
 mod tests;
 
 pub use assemble::{Assembly, Item, Setting, items};
+pub use nawaami::tangents;
 
 use crate::diag::Diagnostic;
 use crate::drawing::Layer;
-use crate::geom::Length;
 use crate::pass::cut::visible;
-use crate::pass::cut::voronoi::Cells;
-use crate::scene::{Canvas, Ground, Limits, Paint};
+use crate::pass::link;
+use crate::scene::{Canvas, Ground, Limits, Link, Paint};
 use crate::stage::{Angles, Graph, Sites, Tiles};
 
 use budget::{Budget, Exceeded};
 use edge::Bank;
+use ground::Around;
 use job::Job;
 use nearby::Nearby;
 use palette::{Batch, Palette};
@@ -69,22 +80,23 @@ pub fn draw(
     let &Stages { sites, graph, angles, tiles } = stages;
     let (bank, nearby) = (Bank::new(&visible), Nearby::new(sites, tiles));
     let (palette, budget) = (Palette::new(paint, setting.ink), Budget::new(limits));
-    // Strokes that run out or beyond tiles need to know where the ground goes on with them.
-    let hand = &paint.tone.hand;
-    let is_continued =
-        paint.tone.ground == Some(Ground::Nearest) && (hand.taper > 0.0 || hand.overshoot > Length::ZERO);
-    let cells = is_continued.then(|| Cells::new(sites, graph, Length::ZERO, Length::ZERO));
+    let is_continued = paint.tone.ground == Some(Ground::Nearest);
+    // Cells that share edges are not all the neighbours that bound a Voronoi cell.
+    let delaunay = match paint.tone.link {
+        Link::Delaunay => None,
+        Link::Edges => is_continued.then(|| link::link(sites, Link::Delaunay)),
+    };
+    let around = is_continued.then(|| Around::new(paint, sites, delaunay.as_ref().unwrap_or(graph)));
     let job = Job {
         paint,
         sites,
-        graph,
         angles,
         tiles,
         bank: &bank,
         nearby: &nearby,
         palette: &palette,
         budget: &budget,
-        cells: cells.as_ref(),
+        around: around.as_ref(),
     };
     let chunks = chunks(&job, canvas).map_err(|exceeded| match exceeded {
         Exceeded::Overlap { .. } => exceeded.diagnostic(limits, paint.tone.place_span).note(paint.span, "painted here"),

@@ -1,18 +1,18 @@
 //! From what is left of a line to marks: straight strokes, curved ones, and such as run out.
 
+use crate::geom::Point;
 use crate::geom::clip::TOLERANCE;
-use crate::geom::{Length, Point};
 use crate::scene::Hatch;
 
 use super::budget::Exceeded;
 use super::dashes::Dashes;
 use super::edge::Nib;
-use super::hand::{Bundle, Line, Taper, weighed};
+use super::hand::{Bundle, Line, Pull};
 use super::job::{self, Job};
 use super::palette::Batch;
 
 /// Pieces of no more than this many millimetres are rounding, however short strokes may be.
-const CRUMB: f64 = 1e-6;
+pub(super) const CRUMB: f64 = 1e-6;
 
 /// Memory that is used again for every stroke.
 #[derive(Default)]
@@ -25,52 +25,35 @@ pub(super) struct Scratch {
 /// A line of which some ranges are to be drawn.
 pub(super) struct Stroke {
     pub(super) line: Line,
-    /// From where to where along the line it is drawn in one go, whatever hides parts of it.
-    whole: (f64, f64),
-    /// Its place among the weights of its pen.
-    weight: usize,
-    /// Its width.
-    pen: Length,
-    taper: Option<Taper>,
+    pull: Pull,
     /// Whether the pen comes from the far end: it turns round at the end of every line.
     is_backwards: bool,
 }
 
 impl Stroke {
     /// A stroke along a line as the hand of a bundle draws it, or ruled.
-    pub(super) fn new(
-        line: Line,
-        bundle: Option<&Bundle>,
-        hatch: &Hatch,
-        whole: (f64, f64),
-        is_backwards: bool,
-    ) -> Self {
-        let Some(bundle) = bundle else {
-            return Self { line, whole, weight: 0, pen: hatch.pen, taper: None, is_backwards };
-        };
-        let weight = bundle.weight(line.number);
-        let pen = weighed(hatch.pen, bundle.hand(), weight);
-        Self { line, whole, weight, pen, taper: bundle.taper(line.number), is_backwards }
+    pub(super) fn new(line: Line, bundle: Option<&Bundle>, hatch: &Hatch, is_backwards: bool) -> Self {
+        Self { line, pull: Pull::line(bundle, hatch, line.number), is_backwards }
     }
 
     /// How far its ink reaches from its line.
-    pub(super) fn nib(&self, hatch: &Hatch) -> Nib {
-        let nib = Nib::of(&Hatch { pen: self.pen, ..*hatch });
+    pub(super) fn nib(&self) -> Nib {
+        let nib = Nib::of(&self.pull.hatch);
         let wander = &self.line.wander;
         // The end of a stroke that rises lies askew, its one corner farther out.
         Nib { half: nib.half + wander.amplitude(), cap: nib.cap + nib.half * wander.steepest().min(1.0) }
     }
 
-    /// Draws what is left in `scratch.ranges` and long enough.
+    /// Draws what is left in `scratch.ranges` and long enough. From where to where it is drawn in one go stands in
+    /// `scratch.wholes`.
     pub(super) fn emit(
         &self,
         job: &Job<'_>,
-        hatch: &Hatch,
         dashes: Option<&Dashes>,
         scratch: &mut job::Scratch,
         out: &mut [Batch],
     ) -> Result<(), Exceeded> {
-        let mut shortest = hatch.shortest.to_mm();
+        let mut shortest = self.pull.hatch.shortest.to_mm();
         if let Some(dashes) = dashes {
             scratch.others.clear();
             for &range in scratch.ranges.as_slice() {
@@ -83,12 +66,16 @@ impl Stroke {
         }
         let shortest = (shortest - TOLERANCE).max(CRUMB);
         let ranges = scratch.ranges.as_slice();
-        let out = &mut out[self.weight];
+        let out = &mut out[self.pull.weight];
         for i in 0..ranges.len() {
             let (from, to) = ranges[if self.is_backwards { ranges.len() - 1 - i } else { i }];
             if to - from >= shortest {
+                let middle = (from + to) / 2.0;
                 // Every dash is a stroke of its own.
-                let whole = dashes.map_or(self.whole, |dashes| dashes.around((from + to) / 2.0, self.line.number));
+                let whole = match dashes {
+                    Some(dashes) => Some(dashes.around(middle, self.line.number)),
+                    None => scratch.wholes.iter().copied().find(|whole| middle < whole.1),
+                };
                 self.piece(whole, (from, to), &mut scratch.stroke, out);
             }
         }
@@ -96,9 +83,9 @@ impl Stroke {
     }
 
     /// Draws a piece of the stroke that is drawn in one go over `whole`.
-    fn piece(&self, whole: (f64, f64), (from, to): (f64, f64), scratch: &mut Scratch, out: &mut Batch) {
-        let is_full = |taper: &Taper| taper.at(whole, from) >= 1.0 && taper.at(whole, to) >= 1.0;
-        let taper = self.taper.filter(|taper| !is_full(taper));
+    fn piece(&self, whole: Option<(f64, f64)>, (from, to): (f64, f64), scratch: &mut Scratch, out: &mut Batch) {
+        let taper = self.pull.taper.zip(whole).map(|(taper, whole)| taper.over(whole));
+        let taper = taper.filter(|taper| taper.at(from) < 1.0 || taper.at(to) < 1.0);
         let wander = &self.line.wander;
         if taper.is_none() && wander.is_none() {
             let (start, end) = if self.is_backwards { (to, from) } else { (from, to) };
@@ -112,7 +99,7 @@ impl Stroke {
             wander.joints((from, to), |u| joints.push(u));
         }
         if let Some(taper) = taper {
-            taper.joints(whole, (from, to), |u| joints.push(u));
+            taper.joints((from, to), |u| joints.push(u));
         }
         joints.push(to);
         joints.sort_unstable_by(f64::total_cmp);
@@ -134,7 +121,7 @@ impl Stroke {
             return;
         };
         widths.clear();
-        widths.extend(joints.iter().map(|&u| self.pen.to_mm() * taper.at(whole, u)));
+        widths.extend(joints.iter().map(|&u| self.pull.hatch.pen.to_mm() * taper.at(u)));
         if self.is_backwards {
             widths.reverse();
         }
