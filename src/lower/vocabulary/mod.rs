@@ -30,20 +30,8 @@ const TABLES: [(Option<Kind>, &[Signature]); 7] = [
 
 /// Names of the language that this version does not draw.
 const LATER: [&str; 14] = [
-    "arcs",
-    "coloured",
-    "contour",
-    "crosses",
-    "flood",
-    "flow",
-    "hand",
-    "motif",
-    "nawaami",
-    "scribble",
-    "steps",
-    "stops",
-    "tuned",
-    "waves",
+    "arcs", "coloured", "contour", "crosses", "flood", "flow", "hand", "motif", "nawaami", "scribble", "steps",
+    "stops", "tuned", "waves",
 ];
 
 /// Whether a name belongs to the language but not to this version.

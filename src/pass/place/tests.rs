@@ -1,3 +1,5 @@
+mod tilings;
+
 use proptest::prelude::*;
 
 use super::*;
