@@ -37,7 +37,10 @@ pub struct Canvas {
     pub width: Length,
     /// Greater than zero.
     pub height: Length,
-    /// Width and height of a PNG.
+    /// How far the picture goes on beyond the page on every side, to be trimmed off; not negative.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub bleed: Length,
+    /// Width and height of a PNG, which shows the trimmed page.
     pub pixels: [u32; 2],
     /// Pixels per inch, greater than zero.
     pub dpi: f64,
@@ -52,11 +55,15 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// The page's area.
+    /// The area that is drawn on: the page and its bleed. The page itself has its corner at the origin.
     #[must_use]
     pub fn bounds(&self) -> Rect {
-        Rect::new(Point::default(), Point::new(self.width.to_mm(), self.height.to_mm()))
+        Rect::new(Point::default(), Point::new(self.width.to_mm(), self.height.to_mm())).grown(self.bleed.to_mm())
     }
+}
+
+fn is_zero(length: &Length) -> bool {
+    *length == Length::ZERO
 }
 
 /// How many greys a PNG has.
