@@ -45,14 +45,12 @@ impl Pen {
         self.cubic_to(a.lerp(b, 2.0 / 3.0), c.lerp(b, 2.0 / 3.0), c);
     }
 
-    /// A cubic Bézier curve, in equal steps of its parameter: as many as Wang's formula asks for (Goldman, "Pyramid
-    /// Algorithms", 2003, section 5.6.3) to keep within the tolerance.
+    /// A cubic Bézier curve, in equal steps of its parameter.
     pub(super) fn cubic_to(&mut self, b: Point, c: Point, d: Point) {
         let Some(&a) = self.current.last() else { return };
-        let bend = ((c - b) - (b - a)).length_squared().max(((d - c) - (c - b)).length_squared()).sqrt();
-        let count = (0.75 * bend / FLATTENING.to_mm()).sqrt().ceil().clamp(1.0, MOST_LINES);
-        for i in 1..count as u32 {
-            let t = f64::from(i) / count;
+        let count = pieces([a, b, c, d]);
+        for i in 1..count {
+            let t = f64::from(i) / f64::from(count);
             let (ab, bc, cd) = (a.lerp(b, t), b.lerp(c, t), c.lerp(d, t));
             self.line_to(ab.lerp(bc, t).lerp(bc.lerp(cd, t), t));
         }
@@ -122,6 +120,13 @@ impl Pen {
             self.done.push(Subpath { points, is_closed });
         }
     }
+}
+
+/// How many equal steps of its parameter keep a cubic Bézier curve within the tolerance, by Wang's formula (Goldman,
+/// "Pyramid Algorithms", 2003, section 5.6.3); at least 1.
+pub(super) fn pieces([a, b, c, d]: [Point; 4]) -> u32 {
+    let bend = ((c - b) - (b - a)).length_squared().max(((d - c) - (c - b)).length_squared()).sqrt();
+    (0.75 * bend / FLATTENING.to_mm()).sqrt().ceil().clamp(1.0, MOST_LINES) as u32
 }
 
 /// How an arc gets from one point to another.

@@ -18,7 +18,7 @@ const SHORTEST: Param = optional("shortest", LENGTH);
 const CAP: Param = optional("cap", Slot::words(&["butt", "round"]));
 
 /// The width of a stroke where none is given: that of a fine nib.
-const DEFAULT_PEN: Length = Length::mm(0.2);
+pub(in super::super) const DEFAULT_PEN: Length = Length::mm(0.2);
 
 pub(super) const SIGNATURES: &[Signature] = &[
     Signature {

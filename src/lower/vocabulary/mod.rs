@@ -7,6 +7,8 @@ mod placements;
 mod regions;
 mod shapes;
 
+pub(super) use fills::DEFAULT_PEN;
+
 use crate::scene::Colour;
 use crate::span::Span;
 use crate::syntax::ast::Argument;
@@ -18,25 +20,25 @@ use super::value::{FieldUnit, Kind, TypedField, Value};
 use crate::field::{Field, Node};
 
 /// Every table of signatures with the kind of place that it belongs to.
-const TABLES: [(Option<Kind>, &[Signature]); 7] = [
+const TABLES: [(Option<Kind>, &[Signature]); 8] = [
     (Some(Kind::Region), regions::SIGNATURES),
     (Some(Kind::Field), fields::SIGNATURES),
     (Some(Kind::Placement), placements::SIGNATURES),
     (Some(Kind::Angles), placements::ANGLES),
     (Some(Kind::Shape), shapes::SIGNATURES),
     (Some(Kind::Fill), fills::SIGNATURES),
+    (Some(Kind::Drawing), regions::DRAWINGS),
     (None, mathematics::SIGNATURES),
 ];
 
 /// Names of the language that this version does not draw.
-const LATER: [&str; 23] = [
+const LATER: [&str; 22] = [
     "arcs",
     "cell",
     "coloured",
     "contour",
     "crosses",
     "edges",
-    "flood",
     "flow",
     "hand",
     "motif",
