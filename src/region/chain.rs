@@ -1,13 +1,13 @@
 //! Chains of cubic Béziers, each of 3n + 1 points: building, cutting and straightening them.
 
-use super::Region;
-use super::curve::pieces;
-use crate::geom::{Point, Rect};
+use super::{FLATTENING, Region};
+use crate::geom::bezier::cubics;
+use crate::geom::{Cubic, Point, Rect};
 
 /// Adds a straight piece from `a`, the chain's last point, to `b`; nothing where they are the same.
 pub(super) fn push_line(chain: &mut Vec<Point>, a: Point, b: Point) {
     if a != b {
-        chain.extend([a.lerp(b, 1.0 / 3.0), a.lerp(b, 2.0 / 3.0), b]);
+        chain.extend_from_slice(&Cubic::line(a, b).0[1..]);
     }
 }
 
@@ -49,10 +49,9 @@ pub fn clipped(chain: &[Point], region: &Region) -> Vec<Vec<Point>> {
     let mut stretches: Vec<(f64, f64)> = Vec::new();
     let mut inside = Vec::new();
     for (i, cubic) in cubics(chain).enumerate() {
-        let count = pieces(cubic);
-        let mut a = cubic[0];
-        for k in 0..count {
-            let b = split(cubic, f64::from(k + 1) / f64::from(count)).0[3];
+        let count = cubic.steps(FLATTENING);
+        let mut a = cubic.start();
+        for (k, b) in (0..count).zip(cubic.flatten(FLATTENING)) {
             inside.clear();
             region.clip_line(a, b, &mut inside);
             for &(from, to) in &inside {
@@ -85,14 +84,10 @@ pub fn clipped(chain: &[Point], region: &Region) -> Vec<Vec<Point>> {
 #[must_use]
 pub fn straight(chain: &[Point]) -> Option<Vec<Point>> {
     const NEAR: f64 = 1e-3;
-    let is_straight = |[a, b, c, d]: [Point; 4]| {
+    let is_straight = |Cubic([a, b, c, d])| {
         a.lerp(d, 1.0 / 3.0).distance(b) <= NEAR && a.lerp(d, 2.0 / 3.0).distance(c) <= NEAR
     };
     cubics(chain).all(is_straight).then(|| chain.iter().step_by(3).copied().collect())
-}
-
-fn cubics(chain: &[Point]) -> impl Iterator<Item = [Point; 4]> {
-    chain.windows(4).step_by(3).filter_map(|window| <[Point; 4]>::try_from(window).ok())
 }
 
 /// From one place of a chain to another, both as numbers of Béziers.
@@ -103,29 +98,13 @@ fn stretch(chain: &[Point], from: f64, to: f64) -> Vec<Point> {
         if from >= to {
             continue;
         }
-        let (head, _) = split(cubic, to);
-        let (_, [a, b, c, d]) = split(head, from / to);
+        let Cubic([a, b, c, d]) = cubic.part(from, to);
         if out.is_empty() {
             out.push(a);
         }
         out.extend([b, c, d]);
     }
     out
-}
-
-/// A Bézier in two at a parameter, by de Casteljau's construction. At its ends one part is the whole, to the bit.
-fn split(cubic: [Point; 4], t: f64) -> ([Point; 4], [Point; 4]) {
-    let [a, b, c, d] = cubic;
-    if t <= 0.0 {
-        return ([a; 4], cubic);
-    }
-    if t >= 1.0 {
-        return (cubic, [d; 4]);
-    }
-    let (ab, bc, cd) = (a.lerp(b, t), b.lerp(c, t), c.lerp(d, t));
-    let (abc, bcd) = (ab.lerp(bc, t), bc.lerp(cd, t));
-    let middle = abc.lerp(bcd, t);
-    ([a, ab, abc, middle], [middle, bcd, cd, d])
 }
 
 #[cfg(test)]

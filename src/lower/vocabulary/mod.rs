@@ -32,27 +32,18 @@ const TABLES: [(Option<Kind>, &[Signature]); 8] = [
 ];
 
 /// Names of the language that this version does not draw.
-const LATER: [&str; 22] = [
+const LATER: [&str; 13] = [
     "arcs",
-    "cell",
     "coloured",
     "contour",
     "crosses",
-    "edges",
     "flow",
     "hand",
     "motif",
     "nawaami",
-    "penrose",
-    "pinwheel",
-    "relaxed",
     "scribble",
-    "stamp",
     "steps",
     "stops",
-    "trapezoid",
-    "triangle",
-    "triangles",
     "tuned",
     "waves",
 ];

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::{Ends, MarkKind, Rgba, Selection, SvgError, SvgFile};
-use crate::geom::{Point, Rect};
-use crate::region::curve::Pen;
+use crate::geom::{Rect, bezier};
+use crate::region::FLATTENING;
 use crate::region::flood::{Centre, Lines};
 
 /// Strokes whose luma, in shares of white's, is above this are no lines: white strokes part what they cross.
@@ -33,7 +33,7 @@ impl SvgFile {
                     let radius = width * place.scale / 2.0;
                     let beyond = if ends == Ends::Butt { 0.0 } else { radius };
                     for chain in self.chains(mark, &place, &mut clips)? {
-                        centres.extend(flattened(&chain).map(|points| Centre { points, radius, beyond }));
+                        centres.push(Centre { points: bezier::flatten(&chain, FLATTENING), radius, beyond });
                     }
                 }
                 MarkKind::Stroke { .. } => {}
@@ -45,17 +45,6 @@ impl SvgFile {
         }
         Ok(Lines { page: place.page, centres, dark })
     }
-}
-
-/// The corners of the straight pieces that stand for a chain; the last is the first again where it is closed.
-fn flattened(chain: &[Point]) -> Option<Vec<Point>> {
-    let (first, rest) = chain.split_first()?;
-    let mut pen = Pen::default();
-    pen.move_to(*first);
-    for cubic in rest.chunks_exact(3) {
-        pen.cubic_to(cubic[0], cubic[1], cubic[2]);
-    }
-    pen.finish().pop().map(|subpath| subpath.points)
 }
 
 /// The share of white's luma (Rec. 709), of sRGB as it is written.
