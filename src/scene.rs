@@ -191,6 +191,8 @@ pub enum Draw {
     Paint(Box<Paint>),
     /// A region's outline.
     Outline(Outline),
+    /// Strokes and fills of a file.
+    Ink(Ink),
     /// Some of these under one name.
     Layer(LayerGroup),
 }
@@ -216,6 +218,42 @@ pub struct Outline {
     /// Where the statement stands.
     #[serde(skip)]
     pub span: Span,
+}
+
+/// Strokes and fills of a file, in their own colours.
+#[derive(Debug, Clone, Serialize)]
+pub struct Ink {
+    /// From the bottom up.
+    pub marks: Vec<InkMark>,
+    /// Where the statement stands.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// A fill or stroke of a file.
+#[derive(Debug, Clone, Serialize)]
+pub struct InkMark {
+    /// Its colour.
+    pub colour: Colour,
+    /// What has it.
+    pub shape: InkShape,
+}
+
+/// What a mark of a file covers.
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum InkShape {
+    /// An area.
+    Area(Region),
+    /// Lines of one width.
+    Strokes {
+        /// Greater than zero.
+        pen: Length,
+        /// How they end.
+        cap: Cap,
+        /// Chains of cubic Béziers, of 3n + 1 points each; one that ends at its first point is closed.
+        chains: Vec<Vec<Point>>,
+    },
 }
 
 /// A region filled with a tone.
