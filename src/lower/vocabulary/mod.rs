@@ -1,7 +1,10 @@
 //! The vocabulary: every name that the language brings with it, and the places where each is known.
 
+mod directions;
 mod fields;
 mod fills;
+mod gradients;
+mod images;
 mod mathematics;
 mod placements;
 mod regions;
@@ -29,15 +32,13 @@ const TABLES: [(Option<Kind>, &[Signature]); 7] = [
 ];
 
 /// Names of the language that this version does not draw.
-const LATER: [&str; 23] = [
+const LATER: [&str; 19] = [
     "arcs",
     "cell",
     "coloured",
-    "contour",
     "crosses",
     "edges",
     "flood",
-    "flow",
     "hand",
     "motif",
     "nawaami",
@@ -46,8 +47,6 @@ const LATER: [&str; 23] = [
     "relaxed",
     "scribble",
     "stamp",
-    "steps",
-    "stops",
     "trapezoid",
     "triangle",
     "triangles",
@@ -104,7 +103,8 @@ pub(super) fn name(cx: &mut Cx<'_, '_>, name: &str, span: Span, slot: Slot) -> O
     match (name, slot.kind) {
         ("pi", None | Some(Kind::Number | Kind::Field)) => return Some(Value::Number(std::f64::consts::PI)),
         ("tau", None | Some(Kind::Number | Kind::Field)) => return Some(Value::Number(std::f64::consts::TAU)),
-        ("canvas", None | Some(Kind::Region | Kind::Box)) => {
+        // Among operands of fields too: some take the page, and others can say that it is a region.
+        ("canvas", None | Some(Kind::Region | Kind::Box | Kind::Field)) => {
             let page = cx.page.clone();
             return Some(page.map_or(Value::Unknown(Some(Kind::Region)), Value::Region));
         }
