@@ -76,9 +76,9 @@ fn gallery() -> Vec<Shown> {
         lines.by_ref().take(end - after).for_each(drop);
         after = end;
         let shown = lines.clone().take_while(|line| !line.starts_with("```"));
-        let picture = shown.filter_map(|line| line.split_once("](")).find_map(|(_, target)| {
-            target.strip_prefix(PICTURES)?.split_once(".png").map(|(name, _)| name.to_owned())
-        });
+        let picture = shown
+            .filter_map(|line| line.split_once("]("))
+            .find_map(|(_, target)| target.strip_prefix(PICTURES)?.split_once(".png").map(|(name, _)| name.to_owned()));
         let Some(name) = picture else { panic!("{PAGE}: no picture is shown of the scene at line {}", block.line) };
         gallery.push(Shown { name, text: block.text });
     }
@@ -113,7 +113,10 @@ fn pictures_are_of_the_scenes_above_them() {
             stale.push(scene.name);
         }
     }
-    assert!(stale.is_empty(), "not of their scenes: {stale:?}; `KAKE_PICTURES=write cargo test gallery` draws them anew");
+    assert!(
+        stale.is_empty(),
+        "not of their scenes: {stale:?}; `KAKE_PICTURES=write cargo test gallery` draws them anew"
+    );
 }
 
 /// Whether two pictures differ by a grey level at most.

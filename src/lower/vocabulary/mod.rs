@@ -32,27 +32,8 @@ const TABLES: [(Option<Kind>, &[Signature]); 7] = [
 ];
 
 /// Names of the language that this version does not draw.
-const LATER: [&str; 19] = [
-    "arcs",
-    "cell",
-    "coloured",
-    "crosses",
-    "edges",
-    "flood",
-    "hand",
-    "motif",
-    "nawaami",
-    "penrose",
-    "pinwheel",
-    "relaxed",
-    "scribble",
-    "stamp",
-    "trapezoid",
-    "triangle",
-    "triangles",
-    "tuned",
-    "waves",
-];
+const LATER: [&str; 10] =
+    ["arcs", "coloured", "crosses", "flood", "hand", "motif", "nawaami", "scribble", "tuned", "waves"];
 
 /// Whether a name belongs to the language but not to this version.
 pub(super) fn is_later(name: &str) -> bool {
