@@ -32,8 +32,7 @@ const TABLES: [(Option<Kind>, &[Signature]); 7] = [
 ];
 
 /// Names of the language that this version does not draw.
-const LATER: [&str; 10] =
-    ["arcs", "coloured", "crosses", "flood", "hand", "motif", "nawaami", "scribble", "tuned", "waves"];
+const LATER: [&str; 4] = ["coloured", "flood", "hand", "tuned"];
 
 /// Whether a name belongs to the language but not to this version.
 pub(super) fn is_later(name: &str) -> bool {
