@@ -5,8 +5,9 @@
 //! rounding, and in their whole width to the region, there within [`CUTTING`].
 
 use crate::field::Node;
+use crate::geom::bezier::cubics;
 use crate::geom::clip::{Frame, Ranges, TOLERANCE};
-use crate::geom::{Figure, Length, Point, Rect, Vec2, chain};
+use crate::geom::{Cubic, Figure, Length, Point, Rect, Vec2, chain};
 use crate::region::FLATTENING;
 use crate::scene::{Blend, Cap, Hatch};
 
@@ -60,6 +61,8 @@ pub(super) struct Scratch {
     pub(super) hidden: Vec<Cutout>,
     /// The stroke at hand.
     pub(super) chain: Vec<Point>,
+    /// Boxes around its curves.
+    boxes: Vec<Rect>,
     /// A seen part of it.
     piece: Vec<Point>,
     /// What is left of it.
@@ -153,13 +156,15 @@ pub(super) fn stroke(
     out: &mut Batch,
 ) -> Result<bool, Exceeded> {
     let (covers, looks) = (scratch.covers.len(), &mut scratch.looks);
-    let Scratch { area, hidden, chain, ranges, found, .. } = &mut scratch.curves;
+    let Scratch { area, hidden, chain, boxes, ranges, found, .. } = &mut scratch.curves;
     let bounds = chain::bounds(chain);
     if !area.may_meet(&bounds) {
         return Ok(false);
     }
-    area.cut(chain, 0, found);
-    ranges.reset(0.0, chain::count(chain) as f64);
+    boxes.clear();
+    boxes.extend(cubics(chain).map(Cubic::bounds));
+    ranges.reset(0.0, boxes.len() as f64);
+    area.cut_within(chain, boxes, ranges.as_slice(), found);
     ranges.intersect(found);
     for cover in &mut hidden[..covers] {
         if ranges.is_empty() {
@@ -167,8 +172,8 @@ pub(super) fn stroke(
         }
         job.budget.look(looks, 1)?;
         if cover.may_meet(&bounds) {
-            job.budget.look(looks, chain::count(chain) as u64)?;
-            cover.cut(chain, 0, found);
+            job.budget.look(looks, boxes.len() as u64)?;
+            cover.cut_within(chain, boxes, ranges.as_slice(), found);
             found.iter().for_each(|&(start, end)| ranges.subtract(start, end));
         }
     }
