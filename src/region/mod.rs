@@ -5,7 +5,9 @@
 //! agree; outer rings run clockwise on the page and holes the other way. Curves become lines within [`FLATTENING`].
 //! Nothing here depends on the machine but the numbers of SVG files, see [`svg`].
 
+pub mod chain;
 mod curve;
+pub mod flood;
 mod index;
 mod nearest;
 mod overlay;

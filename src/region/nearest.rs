@@ -64,6 +64,26 @@ impl Nearest {
         best
     }
 
+    /// Shows the numbers of the segments that may lie within `reach` millimetres of a point, of the `count` that the tree
+    /// was made of, in no order that means anything; what `look` returns is the reach from then on.
+    pub(super) fn search(&self, count: usize, p: Point, reach: f64, mut look: impl FnMut(usize) -> f64) {
+        let mut reach = reach;
+        let top = self.levels.len() - 1;
+        let mut open: Vec<(usize, usize)> = (0..self.levels[top].len()).map(|i| (top, i)).collect();
+        while let Some((level, i)) = open.pop() {
+            if to_box(&self.levels[level][i], p).sqrt() > reach {
+                continue;
+            }
+            let start = i * FAN;
+            if level == 0 {
+                (start..count.min(start + FAN)).for_each(|segment| reach = look(segment));
+            } else {
+                let end = self.levels[level - 1].len().min(start + FAN);
+                open.extend((start..end).map(|below| (level - 1, below)));
+            }
+        }
+    }
+
     /// Looks into the boxes of one level, the nearest first. As deep as the tree is high.
     fn descend(&self, level: usize, boxes: std::ops::Range<usize>, segments: &[Segment], p: Point, best: &mut Found) {
         let mut near = [(f64::INFINITY, 0); FAN];

@@ -10,6 +10,8 @@ mod placements;
 mod regions;
 mod shapes;
 
+pub(super) use fills::DEFAULT_PEN;
+
 use crate::scene::Colour;
 use crate::span::Span;
 use crate::syntax::ast::Argument;
@@ -21,18 +23,19 @@ use super::value::{FieldUnit, Kind, TypedField, Value};
 use crate::field::{Field, Node};
 
 /// Every table of signatures with the kind of place that it belongs to.
-const TABLES: [(Option<Kind>, &[Signature]); 7] = [
+const TABLES: [(Option<Kind>, &[Signature]); 8] = [
     (Some(Kind::Region), regions::SIGNATURES),
     (Some(Kind::Field), fields::SIGNATURES),
     (Some(Kind::Placement), placements::SIGNATURES),
     (Some(Kind::Angles), placements::ANGLES),
     (Some(Kind::Shape), shapes::SIGNATURES),
     (Some(Kind::Fill), fills::SIGNATURES),
+    (Some(Kind::Drawing), regions::DRAWINGS),
     (None, mathematics::SIGNATURES),
 ];
 
 /// Names of the language that this version does not draw.
-const LATER: [&str; 4] = ["coloured", "flood", "hand", "tuned"];
+const LATER: [&str; 3] = ["coloured", "hand", "tuned"];
 
 /// Whether a name belongs to the language but not to this version.
 pub(super) fn is_later(name: &str) -> bool {
