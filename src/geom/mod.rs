@@ -5,13 +5,18 @@
 
 mod angle;
 pub mod bezier;
+pub mod chain;
 pub mod clip;
+pub mod course;
+mod figure;
+pub mod hull;
 mod length;
 mod point;
 mod polygon;
 
 pub use angle::Angle;
 pub use bezier::Cubic;
+pub use figure::{BadOutline, Figure, Pieces, simple_outline};
 pub use length::Length;
 pub use point::{Point, Rect, Vec2};
 pub use polygon::{Polygon, ring_area, ring_bounds, ring_contains};

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::geom::clip::{Frame, Profile, Ranges};
-use crate::geom::{Angle, Point, Vec2};
+use crate::geom::{Angle, Figure, Point, Vec2};
 use crate::scene::{FillKind, Paint, Stack};
 use crate::stage::{Angles, Graph, Sites, Standing, Tiles};
 
@@ -11,7 +11,8 @@ use super::budget::{Budget, Exceeded, PROFILE};
 use super::edge::{self, Bank};
 use super::nearby::Nearby;
 use super::palette::{Batch, Palette};
-use super::{dashes, dots, lines, solid};
+use super::silhouette::Silhouette;
+use super::{arcs, crosses, curves, dashes, dots, lines, motif, nawaami, scribble, solid, waves};
 
 /// Tiles that one thread draws at a time.
 const CHUNK: usize = 256;
@@ -37,14 +38,15 @@ pub(super) struct Scratch {
     /// The outline that lines are measured on.
     pub(super) whole: Profile,
     /// The outline they are drawn in.
-    pub(super) area: Profile,
-    /// Profiles of the covers; the list may be longer than they are many.
-    pub(super) shadows: Vec<Profile>,
+    pub(super) area: Silhouette,
+    /// Silhouettes of the covers; the list may be longer than they are many.
+    pub(super) shadows: Vec<Silhouette>,
     /// What is left of a line.
     pub(super) ranges: Ranges,
     /// Other ranges along it.
     pub(super) others: Vec<(f64, f64)>,
     pub(super) edge: edge::Scratch,
+    pub(super) curves: curves::Scratch,
     /// Looks that the budget does not know of as yet.
     pub(super) looks: u64,
 }
@@ -60,7 +62,7 @@ pub(super) struct Layer<'a> {
     /// The tile's outline, over which lines are spread.
     pub(super) outline: &'a [Point],
     /// What is drawn in: the outline, or where the tile's pattern is continued, an area beyond it.
-    pub(super) area: &'a [Point],
+    pub(super) area: Figure<'a>,
     /// Whether the pattern is continued.
     pub(super) is_continued: bool,
     /// Whether the region's outline comes near.
@@ -70,7 +72,7 @@ pub(super) struct Layer<'a> {
 /// A tile, or an area that is hatched as one.
 pub(super) struct Piece<'a> {
     pub(super) tile: usize,
-    /// Where the tile's pattern is continued, if not in the tile itself.
+    /// The convex area where the tile's pattern is continued, if not in the tile itself.
     pub(super) beyond: Option<&'a [Point]>,
     /// Whether the region's outline comes near.
     pub(super) is_clipped: bool,
@@ -130,20 +132,19 @@ impl Job<'_> {
         out: &mut [Batch],
     ) -> Result<(), Exceeded> {
         let layers = self.tiles.layers[piece.tile];
-        let outline = self.tiles.outline(piece.tile);
+        let figure = self.tiles.figure(piece.tile);
         let fills = &self.paint.tone.fill;
         let mut solid_slots = [None; 4];
         for number in 1..=(layers.full + u8::from(layers.part > 0.0)).min(4) {
             let at = usize::from(number - 1).min(fills.len() - 1);
             let slot = self.palette.slot(at);
-            // Dots of all layers stand on one lattice.
-            let turn = if matches!(fills[at].kind, FillKind::Dots { .. }) { 1 } else { number };
+            let turn = if stands_on_one_lattice(&fills[at].kind) { 1 } else { number };
             let layer = Layer {
                 number,
                 share: if number <= layers.full { 1.0 } else { layers.part },
                 frame: Frame::new(self.sites.points[piece.tile], direction(self.angles.0[piece.tile], turn)),
-                outline,
-                area: piece.beyond.unwrap_or(outline),
+                outline: figure.outline(),
+                area: piece.beyond.map_or(figure, Figure::convex),
                 is_continued: piece.beyond.is_some(),
                 is_clipped: piece.is_clipped,
             };
@@ -158,6 +159,28 @@ impl Job<'_> {
                 FillKind::Dots { hatch, spacing, radius } => {
                     dots::draw(self, &layer, &dots::Dotting::new(hatch, *spacing, *radius), scratch, batch)?;
                 }
+                FillKind::Crosses { hatch, spacing, size } => {
+                    crosses::draw(
+                        self,
+                        &layer,
+                        &crosses::Crossing { hatch, spacing: *spacing, size: *size },
+                        scratch,
+                        batch,
+                    )?;
+                }
+                FillKind::Arcs(hatch) => arcs::draw(self, &layer, hatch, scratch, batch)?,
+                FillKind::Waves { hatch, swing } => {
+                    curves::draw(self, &layer, hatch, &waves::Waves::new(swing), scratch, batch)?;
+                }
+                FillKind::Scribble { hatch, loops, spacing } => {
+                    let key = self.sites.original(piece.tile);
+                    let scribble = scribble::Scribble::new(self.paint, key, number, *loops, *spacing);
+                    curves::draw(self, &layer, hatch, &scribble, scratch, batch)?;
+                }
+                FillKind::Nawaami { hatch, swing } => nawaami::draw(self, &layer, hatch, swing, scratch, batch)?,
+                FillKind::Motif { hatch, spacing, figure } => {
+                    motif::draw(self, &layer, &motif::Motif { hatch, spacing: *spacing, figure }, scratch, batch)?;
+                }
                 FillKind::Solid => {
                     // A second coat of the same ink is not seen.
                     if !solid_slots.contains(&Some(slot)) {
@@ -168,6 +191,20 @@ impl Job<'_> {
             }
         }
         Ok(())
+    }
+}
+
+/// Whether the marks of all layers stand on one lattice, those of one between those of another, and none is turned.
+fn stands_on_one_lattice(kind: &FillKind) -> bool {
+    match kind {
+        FillKind::Dots { .. } | FillKind::Crosses { .. } | FillKind::Motif { .. } => true,
+        FillKind::Lines(_)
+        | FillKind::Dashes { .. }
+        | FillKind::Arcs(_)
+        | FillKind::Waves { .. }
+        | FillKind::Scribble { .. }
+        | FillKind::Nawaami { .. }
+        | FillKind::Solid => false,
     }
 }
 

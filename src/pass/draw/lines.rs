@@ -5,7 +5,7 @@
 
 use crate::field::Node;
 use crate::geom::Length;
-use crate::geom::clip::{Frame, Profile, TOLERANCE};
+use crate::geom::clip::{Frame, TOLERANCE};
 use crate::scene::{Blend, Hatch};
 
 use super::budget::{BANK, Exceeded, LINE, SAMPLE};
@@ -13,6 +13,7 @@ use super::dashes::Dashes;
 use super::job::{Job, Layer, Scratch};
 use super::lattice::{Lattice, is_drawn};
 use super::palette::Batch;
+use super::silhouette::Silhouette;
 
 /// Halvings in the search for the place where a layer ends along the field: from a tenth of a millimetre to a millionth.
 const HALVINGS: usize = 24;
@@ -34,17 +35,16 @@ pub(super) fn draw(
         if !is_drawn(i, layer.share) {
             continue;
         }
-        let Some((start, end)) = scratch.area.span(v) else { continue };
-        scratch.ranges.reset(start, end);
+        scratch.area.ranges(v, &mut scratch.others);
+        scratch.ranges.set(&scratch.others);
         let mut looks = 0;
         for shadow in &scratch.shadows[..scratch.covers.len()] {
             if scratch.ranges.is_empty() {
                 break;
             }
             looks += 1;
-            if let Some((start, end)) = shadow.span(v) {
-                scratch.ranges.subtract(start, end);
-            }
+            let ranges = &mut scratch.ranges;
+            shadow.spans(v, |(start, end)| ranges.subtract(start, end));
         }
         job.budget.look(&mut scratch.looks, looks)?;
         contour(job, layer, v, hatch.pitch, scratch)?;
@@ -76,14 +76,42 @@ pub(super) fn spread(job: &Job<'_>, layer: &Layer<'_>, hatch: &Hatch, scratch: &
     if layer.is_continued { lattice.over(scratch.area.across()) } else { lattice }
 }
 
-/// Takes the profiles of the tiles that hide parts of this one.
+/// Where lines lie, and marks along them, so that no mark falls on one of an earlier layer.
+///
+/// All layers stand on one lattice of half the pitch and half the spacing, turned with the tile, of which each takes a
+/// quarter: the second the middles of the first one's fields, the third and fourth the middles of their sides. The second
+/// layer makes the marks of the first denser by the square root of two and turns their lattice by 45 degrees, where pitch
+/// and spacing are equal; with the fourth it is square again, at half the distance. Tone grows evenly with every layer.
+pub(super) fn interleaved(
+    job: &Job<'_>,
+    layer: &Layer<'_>,
+    hatch: &Hatch,
+    spacing: Length,
+    scratch: &mut Scratch,
+) -> (Lattice, Lattice) {
+    let lines = spread(job, layer, hatch, scratch);
+    let along = scratch.whole.along();
+    let row = if job.paint.tone.shape.is_cell() {
+        Lattice::cell(along, 0.0, spacing.to_mm())
+    } else {
+        Lattice::stamp(along, spacing.to_mm(), 0.5, 1)
+    };
+    match layer.number {
+        0 | 1 => (lines, row),
+        2 => (lines.moved(0.5), row.moved(0.5)),
+        3 => (lines, row.moved(0.5)),
+        _ => (lines.moved(0.5), row),
+    }
+}
+
+/// Takes the silhouettes of the tiles that hide parts of this one.
 fn set_shadows(job: &Job<'_>, layer: &Layer<'_>, scratch: &mut Scratch) {
     let count = scratch.covers.len();
     if scratch.shadows.len() < count {
-        scratch.shadows.resize_with(count, Profile::default);
+        scratch.shadows.resize_with(count, Silhouette::default);
     }
     for (shadow, &cover) in scratch.shadows.iter_mut().zip(&scratch.covers) {
-        shadow.set(job.nearby.outline(cover), &layer.frame);
+        shadow.set(job.nearby.figure(cover), &layer.frame);
     }
 }
 
@@ -137,7 +165,7 @@ fn cross(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
 }
 
 /// Pieces of no more than this many millimetres are rounding, however short strokes may be.
-const CRUMB: f64 = 1e-6;
+pub(super) const CRUMB: f64 = 1e-6;
 
 /// A line of which some ranges are to be drawn.
 pub(super) struct Line<'a> {
