@@ -41,7 +41,10 @@ pub struct Canvas {
     pub width: Length,
     /// Greater than zero.
     pub height: Length,
-    /// Width and height of a PNG.
+    /// How far the picture goes on beyond the page on every side, to be trimmed off; not negative.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub bleed: Length,
+    /// Width and height of a PNG, which shows the trimmed page.
     pub pixels: [u32; 2],
     /// Pixels per inch, greater than zero.
     pub dpi: f64,
@@ -56,11 +59,15 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// The page's area.
+    /// The area that is drawn on: the page and its bleed. The page itself has its corner at the origin.
     #[must_use]
     pub fn bounds(&self) -> Rect {
-        Rect::new(Point::default(), Point::new(self.width.to_mm(), self.height.to_mm()))
+        Rect::new(Point::default(), Point::new(self.width.to_mm(), self.height.to_mm())).grown(self.bleed.to_mm())
     }
+}
+
+fn is_zero(length: &Length) -> bool {
+    *length == Length::ZERO
 }
 
 /// How many greys a PNG has.
@@ -188,6 +195,8 @@ pub enum Draw {
     Paint(Box<Paint>),
     /// A region's outline.
     Outline(Outline),
+    /// Strokes and fills of a file.
+    Ink(Ink),
     /// Some of these under one name.
     Layer(LayerGroup),
 }
@@ -213,6 +222,42 @@ pub struct Outline {
     /// Where the statement stands.
     #[serde(skip)]
     pub span: Span,
+}
+
+/// Strokes and fills of a file, in their own colours.
+#[derive(Debug, Clone, Serialize)]
+pub struct Ink {
+    /// From the bottom up.
+    pub marks: Vec<InkMark>,
+    /// Where the statement stands.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// A fill or stroke of a file.
+#[derive(Debug, Clone, Serialize)]
+pub struct InkMark {
+    /// Its colour.
+    pub colour: Colour,
+    /// What has it.
+    pub shape: InkShape,
+}
+
+/// What a mark of a file covers.
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum InkShape {
+    /// An area.
+    Area(Region),
+    /// Lines of one width.
+    Strokes {
+        /// Greater than zero.
+        pen: Length,
+        /// How they end.
+        cap: Cap,
+        /// Chains of cubic Béziers, of 3n + 1 points each; one that ends at its first point is closed.
+        chains: Vec<Vec<Point>>,
+    },
 }
 
 /// A region filled with a tone.

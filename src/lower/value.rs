@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use crate::field::Field;
 use crate::region::Region;
-use crate::scene::{AngleRule, Colour, Fill, Hand, Placement, Shape};
+use crate::scene::{AngleRule, Colour, Fill, Hand, InkMark, Placement, Shape};
 use crate::span::{SourceId, Span};
 
 use super::tone::ToneValue;
@@ -36,6 +36,8 @@ pub(super) enum Value {
     Fill(Rc<Fill>),
     Hand(Hand),
     Tone(Rc<ToneValue>),
+    /// Strokes and fills of a file.
+    Drawing(Rc<[InkMark]>),
     /// A word of the vocabulary of its place: `knockout`, `a4`, `none`.
     Word(&'static str),
     /// What cannot be known: it was reported already, or belongs to code that is only checked.
@@ -111,6 +113,8 @@ pub(super) enum Kind {
     Fill,
     Hand,
     Tone,
+    /// Not a type that can be named: what `ink` takes.
+    Drawing,
     /// Not a type that can be named: a word of some vocabulary.
     Word,
 }
@@ -162,6 +166,7 @@ impl Kind {
             Self::Fill => "fill",
             Self::Hand => "hand",
             Self::Tone => "tone",
+            Self::Drawing => "drawing",
             Self::Word => "word",
         }
     }
@@ -193,6 +198,7 @@ impl Kind {
             Self::Fill => "a fill",
             Self::Hand => "a hand",
             Self::Tone => "a tone",
+            Self::Drawing => "a drawing",
             Self::Word => "a word",
         }
     }
@@ -228,6 +234,7 @@ impl Value {
             Self::Fill(_) => Kind::Fill,
             Self::Hand(_) => Kind::Hand,
             Self::Tone(_) => Kind::Tone,
+            Self::Drawing(_) => Kind::Drawing,
             Self::Word(_) => Kind::Word,
             Self::Unknown(kind) => return *kind,
         })

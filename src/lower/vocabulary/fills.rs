@@ -24,7 +24,7 @@ const WAVELENGTH: Param = optional("wavelength", LENGTH);
 const AMPLITUDE: Param = optional("amplitude", LENGTH);
 
 /// The width of a stroke where none is given: that of a fine nib.
-const DEFAULT_PEN: Length = Length::mm(0.2);
+pub(in super::super) const DEFAULT_PEN: Length = Length::mm(0.2);
 
 /// How closely the size of a figure is measured, as a share of it.
 const FIGURE: f64 = 1e-4;

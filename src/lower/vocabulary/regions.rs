@@ -3,7 +3,7 @@
 use crate::geom::{Angle, Length, Point, Vec2};
 use crate::region::{PathError, PathProblem, Region, Tangled};
 
-use super::super::call::{Call, Signature, later, optional, required};
+use super::super::call::{Call, Param, Signature, optional, required};
 use super::super::convert::{Slot, coerce};
 use super::super::files;
 use super::super::value::{Kind, Value};
@@ -14,6 +14,26 @@ const POINT: Slot = Slot::of(Kind::Point);
 const LENGTH: Slot = Slot::of(Kind::Length);
 const STRING: Slot = Slot::of(Kind::String);
 const BOX: Slot = Slot::of(Kind::Box);
+const COLOUR: Slot = Slot::of(Kind::Colour);
+const BORDER: Slot = Slot::words(&["open", "wall"]);
+
+/// What can be inked.
+pub(super) const DRAWINGS: &[Signature] = &[Signature {
+    name: "svg",
+    result: Some(Kind::Drawing),
+    params: SVG,
+    build: |call| Some(Value::Drawing(files::ink(call)?.into())),
+}];
+
+/// A file and the part of it that is meant.
+const SVG: &[Param] = &[
+    required("file", STRING),
+    optional("id", STRING),
+    optional("fit", BOX),
+    optional("layer", STRING),
+    optional("class", STRING),
+    optional("colour", COLOUR),
+];
 
 pub(super) const SIGNATURES: &[Signature] = &[
     Signature {
@@ -56,18 +76,24 @@ pub(super) const SIGNATURES: &[Signature] = &[
     Signature {
         name: "svg",
         result: Some(Kind::Region),
+        params: SVG,
+        build: |call| not_empty(call, "the SVG file's filled shapes hold nothing", files::svg),
+    },
+    Signature {
+        name: "flood",
+        result: Some(Kind::Region),
         params: &[
             required("file", STRING),
-            optional("id", STRING),
+            required("at", POINT),
+            optional("close", LENGTH),
+            optional("border", BORDER),
             optional("fit", BOX),
+            optional("id", STRING),
             optional("layer", STRING),
             optional("class", STRING),
-            later("colour"),
+            optional("colour", COLOUR),
         ],
-        build: |call| {
-            let fit = if call.has("fit") { Some(call.area("fit")?) } else { None };
-            not_empty(call, "the SVG file's filled shapes hold nothing", |call| files::svg(call, fit))
-        },
+        build: |call| not_empty(call, "the flood fills nothing", files::flood),
     },
     Signature {
         name: "mask",

@@ -5,8 +5,9 @@
 //! rounding, and in their whole width to the region, there within [`CUTTING`].
 
 use crate::field::Node;
+use crate::geom::bezier::cubics;
 use crate::geom::clip::{Frame, Ranges, TOLERANCE};
-use crate::geom::{Figure, Length, Point, Rect, Vec2, chain};
+use crate::geom::{Cubic, Figure, Length, Point, Rect, Vec2, chain};
 use crate::region::FLATTENING;
 use crate::scene::{Blend, Cap, Hatch};
 
@@ -68,6 +69,8 @@ pub(super) struct Scratch {
     pub(super) hidden: Vec<Cutout>,
     /// The stroke at hand.
     pub(super) chain: Vec<Point>,
+    /// Boxes around its curves.
+    boxes: Vec<Rect>,
     /// A seen part of it.
     piece: Vec<Point>,
     /// What is left of it.
@@ -179,27 +182,27 @@ pub(super) fn stroke(
     out: &mut [Batch],
 ) -> Result<bool, Exceeded> {
     let (covers, looks) = (scratch.covers.len(), &mut scratch.looks);
-    let Scratch { area, partner, hidden, chain, ranges, found, wholes, .. } = &mut scratch.curves;
+    let Scratch { area, partner, hidden, chain, boxes, ranges, found, wholes, .. } = &mut scratch.curves;
     let bounds = chain::bounds(chain);
     if !area.may_meet(&bounds) {
         return Ok(false);
     }
-    area.cut(chain, 0, found);
-    match layer.partner {
-        // Where the ground goes on with it, a stroke ends where the farther one of the tile and its cell does.
-        Some(_) => {
-            wholes.clone_from(found);
-            partner.cut(chain, 0, found);
-            wholes.append(found);
-            unite(wholes);
-            area.cut(chain, 0, found);
-        }
-        None => {
-            overshoot(chain, pull.over, found);
-            wholes.clone_from(found);
-        }
+    boxes.clear();
+    boxes.extend(cubics(chain).map(Cubic::bounds));
+    ranges.reset(0.0, boxes.len() as f64);
+    area.cut_within(chain, boxes, ranges.as_slice(), found);
+    wholes.clear();
+    // Where the ground goes on with it, a stroke ends where the farther one of the tile and its cell does.
+    if layer.partner.is_some() {
+        wholes.append(found);
+        partner.cut_within(chain, boxes, ranges.as_slice(), found);
+        wholes.append(found);
+        unite(wholes);
+        area.cut_within(chain, boxes, ranges.as_slice(), found);
+    } else {
+        overshoot(chain, pull.over, found);
+        wholes.extend_from_slice(found);
     }
-    ranges.reset(0.0, chain::count(chain) as f64);
     ranges.intersect(found);
     for cover in &mut hidden[..covers] {
         if ranges.is_empty() {
@@ -207,8 +210,8 @@ pub(super) fn stroke(
         }
         job.budget.look(looks, 1)?;
         if cover.may_meet(&bounds) {
-            job.budget.look(looks, chain::count(chain) as u64)?;
-            cover.cut(chain, 0, found);
+            job.budget.look(looks, boxes.len() as u64)?;
+            cover.cut_within(chain, boxes, ranges.as_slice(), found);
             found.iter().for_each(|&(start, end)| ranges.subtract(start, end));
         }
     }

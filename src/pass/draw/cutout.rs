@@ -3,7 +3,7 @@
 use crate::geom::bezier::cubics;
 use crate::geom::clip::Frame;
 use crate::geom::hull::Hull;
-use crate::geom::{Figure, Point, Rect};
+use crate::geom::{Figure, Point, Rect, chain};
 
 /// Ranges that come so near to each other, in a curve's parameter, are one: pieces of an outline share sides.
 const SEAM: f64 = 1e-9;
@@ -67,6 +67,37 @@ impl Cutout {
     /// Calls `visit` with the parts of a straight way that lie in it, as shares of the way.
     pub(super) fn line(&self, a: Point, b: Point, visit: impl FnMut((f64, f64))) {
         self.pieces().iter().filter_map(|piece| piece.line(a, b)).for_each(visit);
+    }
+
+    /// The ranges of a chain that lie in it, ascending, as far as they may share something with other ranges of it. `boxes` lie
+    /// around the chain's curves.
+    pub(super) fn cut_within(
+        &mut self,
+        chain: &[Point],
+        boxes: &[Rect],
+        ranges: &[(f64, f64)],
+        found: &mut Vec<(f64, f64)>,
+    ) {
+        found.clear();
+        let pieces =
+            if self.count == 0 { std::slice::from_mut(&mut self.outline) } else { &mut self.pieces[..self.count] };
+        for piece in pieces.iter_mut() {
+            let mut done = 0;
+            for &(start, end) in ranges {
+                let last = (end.ceil() as usize).min(boxes.len());
+                for number in done.max(start as usize)..last {
+                    if piece.may_meet(&boxes[number])
+                        && let Some(cubic) = chain::curve(chain, number)
+                    {
+                        piece.cut(&cubic, number, found);
+                    }
+                }
+                done = done.max(last);
+            }
+        }
+        if self.count > 0 {
+            unite(found);
+        }
     }
 
     /// The ranges of a chain that lie in it, ascending. `number` is that of the chain's first curve.
