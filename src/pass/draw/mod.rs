@@ -30,6 +30,8 @@ mod scribble;
 mod silhouette;
 mod solid;
 mod stroke;
+mod taper;
+mod wander;
 mod waves;
 
 #[cfg(test)]
