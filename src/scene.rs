@@ -356,7 +356,11 @@ impl Placement {
     #[must_use]
     pub fn is_tiling(&self) -> bool {
         match self {
-            Self::Grid(_) | Self::Hex { .. } | Self::Triangles { .. } | Self::Penrose { .. } | Self::Pinwheel { .. } => true,
+            Self::Grid(_)
+            | Self::Hex { .. }
+            | Self::Triangles { .. }
+            | Self::Penrose { .. }
+            | Self::Pinwheel { .. } => true,
             Self::Poisson { .. } | Self::Uniform { .. } | Self::Points(_) | Self::Relaxed { .. } => false,
         }
     }

@@ -278,7 +278,10 @@ mod tests {
 
     fn linked(points: &[Point]) -> Graph {
         let area = rect(0.0, 0.0, 1.0, 1.0);
-        link(&Sites { points: points.to_vec(), domain: area, extent: area, spacing: 1.0, cells: None, tiling: None }, Link::Delaunay)
+        link(
+            &Sites { points: points.to_vec(), domain: area, extent: area, spacing: 1.0, cells: None, tiling: None },
+            Link::Delaunay,
+        )
     }
 
     fn placed(width: f64, height: f64, placement: Placement) -> Vec<Point> {

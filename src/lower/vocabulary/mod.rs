@@ -33,19 +33,8 @@ const TABLES: [(Option<Kind>, &[Signature]); 8] = [
 
 /// Names of the language that this version does not draw.
 const LATER: [&str; 13] = [
-    "arcs",
-    "coloured",
-    "contour",
-    "crosses",
-    "flow",
-    "hand",
-    "motif",
-    "nawaami",
-    "scribble",
-    "steps",
-    "stops",
-    "tuned",
-    "waves",
+    "arcs", "coloured", "contour", "crosses", "flow", "hand", "motif", "nawaami", "scribble", "steps", "stops",
+    "tuned", "waves",
 ];
 
 /// Whether a name belongs to the language but not to this version.

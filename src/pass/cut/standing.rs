@@ -58,11 +58,7 @@ impl<'a> Ground<'a> {
 
     /// The standing where only tiles wholly inside are drawn.
     pub(super) fn whole(&self, figure: Figure<'_>) -> Standing {
-        if self.contact(figure) == Contact::Inside {
-            Standing::Whole
-        } else {
-            Standing::Absent
-        }
+        if self.contact(figure) == Contact::Inside { Standing::Whole } else { Standing::Absent }
     }
 
     /// How a tile lies to the region: as all its pieces do. One without an outline lies outside.

@@ -45,16 +45,21 @@ pub(super) fn place(placement: &Placement, ground: &Ground<'_>, spacing: f64) ->
             let (above, below) = (down.between(row - 1), down.between(row));
             for column in columns() {
                 let [left, x, right] = [column - 1, column, column + 1].map(|column| across.at(column));
-                let ring = [(x, above[0]), (right, above[1]), (right, below[0]), (x, below[1]), (left, below[0]), (left, above[1])];
+                let ring = [
+                    (x, above[0]),
+                    (right, above[1]),
+                    (right, below[0]),
+                    (x, below[1]),
+                    (left, below[0]),
+                    (left, above[1]),
+                ];
                 tiling.push(&ring.map(|(x, y)| Point::new(x, y)));
             }
         }
     }
     let mut sites = ground.sites(points, spacing, spacing);
     if ground.wants_cells {
-        let next = |row: i64, column: i64| {
-            [(row, column + 2), (row + 1, column - 1), (row + 1, column + 1)].map(Some)
-        };
+        let next = |row: i64, column: i64| [(row, column + 2), (row + 1, column - 1), (row + 1, column + 1)].map(Some);
         tiling.edges = lattice.pairs(next);
         sites.tiling = Some(tiling);
     }

@@ -46,12 +46,7 @@ pub(super) struct Cell<'a> {
 
 impl<'a> Patch<'a> {
     /// An empty patch for cells of `area` square edges on average.
-    pub(super) fn new(
-        placement: &Placement,
-        ground: &'a Ground<'a>,
-        edge: f64,
-        area: f64,
-    ) -> Result<Self, Diagnostic> {
+    pub(super) fn new(placement: &Placement, ground: &'a Ground<'a>, edge: f64, area: f64) -> Result<Self, Diagnostic> {
         let spacing = edge * area.sqrt();
         let extent = ground.extent(spacing);
         // Cells that only reach in are counted as well.

@@ -36,7 +36,10 @@ impl Rows {
 
     /// Pairs of every site and those of its neighbours that are there. `neighbours` gives the rows and columns of some of
     /// them, so that every pair is named once.
-    pub(super) fn pairs<const N: usize>(&self, neighbours: impl Fn(i64, i64) -> [Option<(i64, i64)>; N]) -> Vec<[u32; 2]> {
+    pub(super) fn pairs<const N: usize>(
+        &self,
+        neighbours: impl Fn(i64, i64) -> [Option<(i64, i64)>; N],
+    ) -> Vec<[u32; 2]> {
         let mut pairs = Vec::with_capacity(self.count as usize * N);
         for (number, &(first, start)) in self.starts.iter().enumerate() {
             let end = self.starts.get(number + 1).map_or(self.count, |next| next.1);
