@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::back::metadata::Metadata;
-use crate::back::{json, png, svg};
+use crate::back::{json, pdf, png, svg};
 use crate::diag::{Code, Diagnostic};
 use crate::drawing::Drawing;
 use crate::scene::Limits;
@@ -21,7 +21,7 @@ use super::{Ended, SceneArgs, report};
 pub(super) struct BuildArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// Where to: FILE.svg, FILE.png or FILE.json, or - for SVG on standard output; several times for several files.
+    /// Where to: FILE.svg, FILE.png, FILE.pdf or FILE.json, or - for SVG on standard output; several times for several files.
     /// By default the scene's name with .svg, in this folder
     #[arg(short, long, value_name = "FILE")]
     output: Vec<PathBuf>,
@@ -71,6 +71,7 @@ fn parse_dpi(text: &str) -> Result<f64, String> {
 enum Kind {
     Svg,
     Png,
+    Pdf,
     Json,
 }
 
@@ -82,8 +83,9 @@ fn kind_of(output: &Path) -> Result<Kind, String> {
     match extension.to_str() {
         Some("svg") => Ok(Kind::Svg),
         Some("png") => Ok(Kind::Png),
+        Some("pdf") => Ok(Kind::Pdf),
         Some("json") => Ok(Kind::Json),
-        _ => Err(format!("{}: outputs end in .svg, .png or .json", output.display())),
+        _ => Err(format!("{}: outputs end in .svg, .png, .pdf or .json", output.display())),
     }
 }
 
@@ -203,6 +205,7 @@ impl Kind {
         match self {
             Self::Svg => "svg",
             Self::Png => "png",
+            Self::Pdf => "pdf",
             Self::Json => "json",
         }
     }
@@ -247,6 +250,7 @@ fn check_pixels(compiled: &mut Compiled, limits: &Limits) {
 fn write(drawing: &Drawing, metadata: Option<&Metadata>, kind: Kind, target: &Path) -> io::Result<Option<Pending>> {
     let fill = |out: &mut dyn Write| match kind {
         Kind::Svg => svg::write(drawing, metadata, out),
+        Kind::Pdf => pdf::write(drawing, metadata, out),
         Kind::Json => json::write(drawing, out),
         Kind::Png => png::write(drawing, metadata, out).map_err(|error| match error {
             png::PngError::Io(error) => error,

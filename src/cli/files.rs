@@ -89,7 +89,7 @@ pub(super) fn open(scene: &Path, root: Option<&Path>) -> Result<Opened, OpenErro
         None => folder.ancestors().find(|dir| dir.join("kake.toml").is_file()).unwrap_or(&folder).to_owned(),
     };
     let extension = full.extension().unwrap_or_default().to_ascii_lowercase();
-    if extension == "svg" || extension == "png" {
+    if extension == "svg" || extension == "png" || extension == "pdf" {
         let bytes = fs::read(&full).map_err(|error| failed(scene, &error))?;
         let Some(picture) = metadata::extract(&bytes) else {
             return Err(OpenError::NoScene(scene.display().to_string()));

@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::ops::Range;
 
-use super::curve::Pen;
+use super::curve::{Draw, Pen};
 use super::{FillRule, Operation, Region, Subpath, Tangled, contained, overlay};
 use crate::geom::{Length, Point, Rect};
 

@@ -32,10 +32,7 @@ const TABLES: [(Option<Kind>, &[Signature]); 8] = [
 ];
 
 /// Names of the language that this version does not draw.
-const LATER: [&str; 13] = [
-    "arcs", "coloured", "contour", "crosses", "flow", "hand", "motif", "nawaami", "scribble", "steps", "stops",
-    "tuned", "waves",
-];
+const LATER: [&str; 7] = ["coloured", "contour", "flow", "hand", "steps", "stops", "tuned"];
 
 /// Whether a name belongs to the language but not to this version.
 pub(super) fn is_later(name: &str) -> bool {

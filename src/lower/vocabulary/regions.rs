@@ -1,7 +1,7 @@
 //! Regions.
 
 use crate::geom::{Angle, Length, Point, Vec2};
-use crate::region::{PathProblem, Region, Tangled};
+use crate::region::{PathError, PathProblem, Region, Tangled};
 
 use super::super::call::{Call, Param, Signature, optional, required};
 use super::super::convert::{Slot, coerce};
@@ -229,23 +229,26 @@ fn path(call: &mut Call<'_, '_, '_>) -> Option<Value> {
             call.cx.report_value(diagnostic.hint(files::SIMPLIFY));
             None
         }
-        Err(error) => {
-            let whole = call.span_of("data");
-            let mut span = whole;
-            // Where the string is written without escapes its characters stand where the path's do.
-            let length = u32::try_from(data.value.len()).unwrap_or(u32::MAX);
-            if let Ok(offset) = u32::try_from(error.offset)
-                && offset < length
-                && whole.end - whole.start == length.saturating_add(2)
-            {
-                span.start = whole.start + 1 + offset;
-                span.end = span.start + 1;
-            }
-            let diagnostic = Diagnostic::error(Code::Path, span, error.to_string());
-            call.cx.report_value(diagnostic.hint("path data looks like `M 0 0 L 10 0 L 10 10 Z`"));
-            None
-        }
+        Err(error) => path_error(call, &data.value, &error),
     })
+}
+
+/// Says what is wrong with the path data of the argument `data`.
+pub(super) fn path_error<T>(call: &mut Call<'_, '_, '_>, data: &str, error: &PathError) -> Option<T> {
+    let whole = call.span_of("data");
+    let mut span = whole;
+    // Where the string is written without escapes its characters stand where the path's do.
+    let length = u32::try_from(data.len()).unwrap_or(u32::MAX);
+    if let Ok(offset) = u32::try_from(error.offset)
+        && offset < length
+        && whole.end - whole.start == length.saturating_add(2)
+    {
+        span.start = whole.start + 1 + offset;
+        span.end = span.start + 1;
+    }
+    let diagnostic = Diagnostic::error(Code::Path, span, error.to_string());
+    call.cx.report_value(diagnostic.hint("path data looks like `M 0 0 L 10 0 L 10 10 Z`"));
+    None
 }
 
 fn mask(call: &mut Call<'_, '_, '_>) -> Option<Value> {

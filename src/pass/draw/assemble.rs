@@ -159,6 +159,7 @@ impl<'a> Assembly<'a> {
         let page = Page {
             width: canvas.width,
             height: canvas.height,
+            bleed: canvas.bleed,
             pixels: canvas.pixels,
             dpi: canvas.dpi,
             paper: canvas.paper,
