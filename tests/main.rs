@@ -9,5 +9,6 @@ mod codes;
 mod determinism;
 mod documents;
 mod examples;
+mod ink;
 mod later;
 mod support;

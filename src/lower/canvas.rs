@@ -36,8 +36,8 @@ const SHEETS: [(&str, f64, f64); 14] = [
 const SHEET_NAMES: &[&str] =
     &["a0", "a1", "a2", "a3", "a4", "a5", "a6", "b4", "b5", "jis_b4", "jis_b5", "legal", "letter", "tabloid"];
 
-const PROPERTIES: [&str; 7] = ["size", "dpi", "pixels", "paper", "ink", "depth", "unit"];
-const LATER: [&str; 3] = ["bleed", "gain", "repeat"];
+const PROPERTIES: [&str; 8] = ["size", "dpi", "pixels", "paper", "ink", "depth", "unit", "gain"];
+const LATER: [&str; 2] = ["bleed", "repeat"];
 
 /// Pixels per inch where neither `dpi` nor `pixels` says otherwise: the least that print shops take for line art.
 const DEFAULT_DPI: f64 = 600.0;
@@ -60,6 +60,7 @@ pub(super) fn default() -> Canvas {
         ink: Colour::BLACK,
         depth: Depth::Eight,
         unit: Length::mm(1.0),
+        gain: Length::ZERO,
     }
 }
 
@@ -97,6 +98,7 @@ pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Option<Canvas> {
     let paper = reader.colour(find("paper"), &["none"], Some(Colour::WHITE));
     let ink = reader.colour(find("ink"), &[], Some(Colour::BLACK));
     let depth = reader.depth(find("depth"));
+    let gain = reader.gain(find("gain"));
     // A property that is not known may have been meant for it.
     let is_known = |property: &&Property| PROPERTIES.contains(&property.name.name.as_str());
     if find("size").is_none() && given.iter().all(is_known) {
@@ -114,7 +116,8 @@ pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Option<Canvas> {
     cx.dpi = Some(dpi);
     let bounds = Rect::new(Point::default(), Point::new(width.to_mm(), height.to_mm()));
     cx.page = Some(Region::rect(bounds));
-    Some(Canvas { width, height, pixels, dpi, paper: paper?, ink: ink??, depth: depth?, unit: Length::mm(unit?) })
+    let (unit, gain) = (Length::mm(unit?), gain?);
+    Some(Canvas { width, height, pixels, dpi, paper: paper?, ink: ink??, depth: depth?, unit, gain })
 }
 
 fn check_property(cx: &mut Cx<'_, '_>, property: &Property, earlier: &[&Property]) {
@@ -183,6 +186,17 @@ impl<'a> Reader<'_, 'a, '_> {
             return Some(mm);
         }
         self.refuse(property.value.span, format!("`{}` must be greater than zero", property.name.name))
+    }
+
+    /// How far ink spreads. Tones whose pens are no wider are refused where they are painted.
+    fn gain(&mut self, property: Option<&'a Property>) -> Option<Length> {
+        let Some(property) = property else { return Some(Length::ZERO) };
+        let mm = eval::expect(self.cx, self.scope, &property.value, Slot::of(Kind::Length)).as_length()?;
+        if !(0.0..=LARGEST).contains(&mm) {
+            return self.refuse(property.value.span, "`gain` must not be negative");
+        }
+        self.cx.gain = Some((Length::mm(mm), property.value.span));
+        Some(Length::mm(mm))
     }
 
     /// A number in a range; `None` where it is not given.

@@ -89,7 +89,7 @@ fn set_shadows(job: &Job<'_>, layer: &Layer<'_>, scratch: &mut Scratch) {
 
 /// Keeps the parts of a line where the field has this layer, if layers end along the field.
 fn contour(job: &Job<'_>, layer: &Layer<'_>, v: f64, pitch: Length, scratch: &mut Scratch) -> Result<(), Exceeded> {
-    let field = &job.paint.tone.k;
+    let field = job.paint.tone.asked.field();
     if job.paint.tone.blend != Blend::Contour || matches!(field.node(), Node::Constant(_)) {
         return Ok(());
     }

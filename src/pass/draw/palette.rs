@@ -5,7 +5,7 @@
 
 use crate::drawing::{Curves, Dots, Layer, Strokes, Tapers};
 use crate::geom::{Length, Point};
-use crate::scene::{Cap, Colour, Fill, FillKind, Ground, Paint};
+use crate::scene::{Asked, Cap, Colour, Darkness, Fill, FillKind, Ground, Paint};
 
 use super::solid;
 
@@ -34,6 +34,8 @@ pub(super) struct Palette {
     fills: Vec<usize>,
     /// The slot of the ground's own fill.
     ground: usize,
+    /// The slot of tiles that are inked all over because they are dark.
+    solid: usize,
 }
 
 impl Palette {
@@ -52,8 +54,16 @@ impl Palette {
             Some(Ground::Fill { fill, .. }) => slot(fill),
             Some(Ground::Nearest) | None => 0,
         };
-        let fills = paint.tone.fill.iter().map(slot).collect();
-        Self { slots, fills, ground }
+        let fills = paint.tone.fill.iter().map(&mut slot).collect();
+        // They take the ink of the first layer.
+        let solid = match &paint.tone.asked {
+            Asked::Darkness(Darkness { solid: Some(_), .. }) => {
+                let ink = paint.tone.fill.first().and_then(|fill| fill.ink);
+                slot(&Fill { kind: FillKind::Solid, ink })
+            }
+            Asked::Darkness(_) | Asked::K(_) => 0,
+        };
+        Self { slots, fills, ground, solid }
     }
 
     /// One empty batch for each slot.
@@ -69,6 +79,11 @@ impl Palette {
     /// The slot of the ground's own fill.
     pub(super) fn ground_slot(&self) -> usize {
         self.ground
+    }
+
+    /// The slot of tiles that are inked all over because they are dark.
+    pub(super) fn solid_slot(&self) -> usize {
+        self.solid
     }
 
     /// Puts batches together, in order; layers without a mark are left out.

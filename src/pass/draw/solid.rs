@@ -20,7 +20,7 @@ pub(super) fn draw(job: &Job<'_>, layer: &Layer<'_>, covers: &[u32], out: &mut B
     if layer.share < HALF {
         return;
     }
-    let field = &job.paint.tone.k;
+    let field = job.paint.tone.asked.field();
     let has_contour = job.paint.tone.blend == Blend::Contour && !matches!(field.node(), Node::Constant(_));
     let hidden: Vec<Vec<Point>> = covers
         .iter()

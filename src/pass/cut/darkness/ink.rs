@@ -1,0 +1,86 @@
+//! How much of the paper layers of a fill cover: shares of an area without end, reckoned from pitches and pens.
+//!
+//! Layers of strokes are turned against each other, so that what two of them leave bare is the product of what each
+//! leaves bare. Dots of all layers stand on one lattice and add up until they touch.
+
+use std::f64::consts::PI;
+
+use crate::geom::Length;
+use crate::scene::{Fill, FillKind, Hatch};
+
+use super::super::layers::MOST;
+
+/// Samples along a side of a field of dots that grow together.
+const SAMPLES: u32 = 64;
+
+/// Places of the dots of layers 1 to 4, in steps along and across.
+pub(super) const DOTS: [[f64; 2]; 4] = [[0.0, 0.0], [0.5, 0.5], [0.5, 0.0], [0.0, 0.5]];
+
+/// The share of the paper that one layer of a fill covers at its own pitch, in [0, 1]. `gain` is how far ink spreads beyond
+/// every edge.
+pub(super) fn share(kind: &FillKind, gain: Length) -> f64 {
+    let width = |hatch: &Hatch| hatch.pen + gain * 2.0;
+    match kind {
+        FillKind::Lines(hatch) => (width(hatch) / hatch.pitch).min(1.0),
+        FillKind::Dashes { hatch, dash, gap } => {
+            (width(hatch) / hatch.pitch).min(1.0) * ((*dash + gain * 2.0) / (*dash + *gap)).min(1.0)
+        }
+        FillKind::Dots { hatch, spacing, radius } => dotted(hatch.pitch, *spacing, *radius + gain, &DOTS[..1]),
+        FillKind::Solid => 1.0,
+    }
+}
+
+/// The share of a tile that 0 to 4 full layers cover, which never falls. `held` is what tiles hold of each layer, against
+/// a layer without end.
+pub(super) fn levels(fills: &[Fill], gain: Length, held: &[f64; MOST as usize]) -> [f64; MOST as usize + 1] {
+    let mut levels = [0.0; MOST as usize + 1];
+    let mut bare = 1.0;
+    // The dots of one fill that were laid so far.
+    let mut dots: Option<(&FillKind, f64, Vec<[f64; 2]>)> = None;
+    for n in 1..levels.len() {
+        let Some(fill) = fills.get((n - 1).min(fills.len().saturating_sub(1))) else { return levels };
+        match &fill.kind {
+            kind @ FillKind::Dots { hatch, spacing, radius } => {
+                let (before, mut places) = match dots.take() {
+                    Some((laid, before, places)) if laid == kind => (before, places),
+                    _ => (bare, Vec::new()),
+                };
+                places.push(DOTS[n - 1]);
+                let inked =
+                    dotted(hatch.pitch, *spacing, *radius + gain, &places) * held[..n].iter().sum::<f64>() / n as f64;
+                bare = before * (1.0 - inked).clamp(0.0, 1.0);
+                dots = Some((kind, before, places));
+            }
+            kind @ (FillKind::Lines(_) | FillKind::Dashes { .. } | FillKind::Solid) => {
+                bare *= (1.0 - held[n - 1] * share(kind, gain)).clamp(0.0, 1.0);
+                dots = None;
+            }
+        }
+        levels[n] = f64::max(levels[n - 1], 1.0 - bare);
+    }
+    levels
+}
+
+/// The share that dots of a radius cover which stand at some places of a field of `pitch` by `spacing`.
+fn dotted(pitch: Length, spacing: Length, radius: Length, places: &[[f64; 2]]) -> f64 {
+    let (pitch, spacing, radius) = (pitch.to_mm(), spacing.to_mm(), radius.to_mm());
+    let least = pitch.min(spacing) / if places.len() > 1 { 2.0 } else { 1.0 };
+    if 2.0 * radius <= least {
+        return places.len() as f64 * PI * radius * radius / (pitch * spacing);
+    }
+    if radius >= (pitch * pitch + spacing * spacing).sqrt() {
+        return 1.0;
+    }
+    let side = f64::from(SAMPLES);
+    let sample = |i: u32| (f64::from(i) + 0.5) / side;
+    let is_inked = |u: f64, v: f64| {
+        places.iter().any(|[along, across]| {
+            // Of a dot's images the nearest in each direction counts.
+            let off = |at: f64, step: f64| (at - at.round()) * step;
+            let (x, y) = (off(u - along, spacing), off(v - across, pitch));
+            x * x + y * y <= radius * radius
+        })
+    };
+    let inked = (0..SAMPLES).flat_map(|j| (0..SAMPLES).map(move |i| (i, j)));
+    inked.filter(|&(i, j)| is_inked(sample(i), sample(j))).count() as f64 / (side * side)
+}
