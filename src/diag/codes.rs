@@ -152,6 +152,9 @@ codes! {
          all over, and `range: fit` presses the whole picture into the tone's range."
     Checkerboard "checkerboard" "A checkerboard needs a grid"
         "`checkerboard()` alternates along rows and columns, which only `grid(...)` has."
+    Tiling "tiling" "Cells need a placement that is a tiling"
+        "`cell(...)` draws the cells of a tiling and `link: edges` joins those that share an edge. `grid`, `hex`, \
+         `triangles`, `penrose` and `pinwheel` are tilings. Sites of other placements get cells with `voronoi(...)`."
     NoTiles "no-tiles" "A paint draws nothing"
         "The placement put no tile on the region, which may be smaller than the distance between sites; or there are \
          tiles, but nothing of their fill is left: strokes are shorter than `shortest`, dots do not fit, or later tiles \

@@ -13,7 +13,14 @@ use crate::stage::{Graph, Sites};
 pub fn link(sites: &Sites, link: Link) -> Graph {
     match link {
         Link::Delaunay => delaunay(&sites.points),
+        Link::Edges => shared_edges(sites),
     }
+}
+
+/// The cells of a tiling that share an edge. Lowering lets only tilings come here; sites without cells are left alone.
+fn shared_edges(sites: &Sites) -> Graph {
+    let edges = sites.tiling.as_ref().map_or(&[][..], |tiling| &tiling.edges);
+    Graph::new(sites.points.len(), edges, Vec::new())
 }
 
 /// The edges and triangles of the Delaunay triangulation.
@@ -271,7 +278,10 @@ mod tests {
 
     fn linked(points: &[Point]) -> Graph {
         let area = rect(0.0, 0.0, 1.0, 1.0);
-        link(&Sites { points: points.to_vec(), domain: area, extent: area, spacing: 1.0, cells: None }, Link::Delaunay)
+        link(
+            &Sites { points: points.to_vec(), domain: area, extent: area, spacing: 1.0, cells: None, tiling: None },
+            Link::Delaunay,
+        )
     }
 
     fn placed(width: f64, height: f64, placement: Placement) -> Vec<Point> {

@@ -14,7 +14,7 @@ use crate::diag::{Code, Diagnostic};
 use crate::field::{Field, Node};
 use crate::geom::Point;
 use crate::scene::{Canvas, Darkness, Paint, Range};
-use crate::stage::{Angles, Graph, Layers, Sites, Standing};
+use crate::stage::{Angles, Graph, Layers, Sites, Standing, Tiles};
 
 use super::layers::MOST;
 use cover::Cover;
@@ -35,21 +35,15 @@ const INWARDS: f64 = 0.6;
 /// What of the region may be a little too dark before it is worth a warning.
 const SLIGHT: f64 = 0.005;
 
-/// What a paint asks for.
-pub(super) struct Asking<'a> {
+/// The tiles of a paint with what they came from. Their `k` is what is asked for where layers are still to be found.
+#[derive(Clone, Copy)]
+pub(super) struct Bed<'a> {
     pub(super) paint: &'a Paint,
     pub(super) canvas: &'a Canvas,
-    pub(super) darkness: &'a Darkness,
     pub(super) sites: &'a Sites,
     pub(super) graph: &'a Graph,
     pub(super) angles: &'a Angles,
-    /// The outline of every tile.
-    pub(super) rings: &'a [&'a [Point]],
-    /// The mean of the field over every tile, clamped to [0, 1].
-    pub(super) wanted: &'a [f64],
-    pub(super) standing: &'a [Standing],
-    /// Whether sites lie in the region.
-    pub(super) inside: &'a [bool],
+    pub(super) tiles: &'a Tiles,
 }
 
 /// The mean of a field over a tile.
@@ -62,13 +56,14 @@ pub(super) fn mean(field: &Field, site: Point, ring: &[Point]) -> f64 {
     (middle + sum) / (ring.len() + 1) as f64
 }
 
-/// Layers for every tile. A warning comes with them where the region asks for more than the tone prints.
-pub(super) fn layers(asking: &Asking<'_>) -> (Vec<Layers>, Option<Diagnostic>) {
-    let cover = Cover::new(asking.paint, asking.sites, asking.graph, asking.rings, asking.canvas.gain);
-    let mut reckoner = Reckoner::new(asking, &cover);
+/// Layers for every tile, of which `k` says what they ask for. A warning comes with them where the region asks for more
+/// than the tone prints.
+pub(super) fn layers(bed: &Bed<'_>, darkness: &Darkness) -> (Vec<Layers>, Option<Diagnostic>) {
+    let cover = Cover::new(bed);
+    let mut reckoner = Reckoner::new(bed, &cover);
     let greatest = cover.on_paper(reckoner.greatest());
-    let fitted = fit(asking, greatest);
-    let solid = asking.darkness.solid.unwrap_or(f64::INFINITY);
+    let solid = darkness.solid.unwrap_or(f64::INFINITY);
+    let fitted = fit(bed.tiles, darkness, greatest);
     let wanted: Vec<f64> = fitted.iter().map(|&wanted| cover.in_tiles(wanted.min(greatest))).collect();
     let mut passed = vec![0.0; wanted.len()];
     let layers = (0..wanted.len())
@@ -78,7 +73,7 @@ pub(super) fn layers(asking: &Asking<'_>) -> (Vec<Layers>, Option<Diagnostic>) {
             }
             let asked = wanted[i] + passed[i];
             let (layers, drawn) = reckoner.choose(i, asked);
-            let later = later(asking.graph, i);
+            let later = later(bed.graph, i);
             let error = (asked - drawn).clamp(-MOST_PASSED, MOST_PASSED) * reckoner.area(i) / later.len().max(1) as f64;
             for &j in later {
                 let area = reckoner.area(j as usize);
@@ -89,7 +84,19 @@ pub(super) fn layers(asking: &Asking<'_>) -> (Vec<Layers>, Option<Diagnostic>) {
             layers
         })
         .collect();
-    (layers, too_dark(asking, &fitted, greatest))
+    (layers, too_dark(bed, &fitted, greatest, solid))
+}
+
+/// The share of the paper that tiles with layers cover: the mean over those whose sites lie in the region.
+pub(super) fn reckon(bed: &Bed<'_>) -> f64 {
+    let cover = Cover::new(bed);
+    let mut reckoner = Reckoner::new(bed, &cover);
+    let (mut ink, mut area) = (0.0, 0.0);
+    for tile in (0..bed.tiles.len()).filter(|&tile| bed.tiles.inside[tile]) {
+        ink += reckoner.ink(tile, bed.tiles.layers[tile]) * reckoner.area(tile);
+        area += reckoner.area(tile);
+    }
+    if area > 0.0 { cover.on_paper(ink / area) } else { 0.0 }
 }
 
 /// The neighbours of a site that come after it.
@@ -100,27 +107,27 @@ fn later(graph: &Graph, site: usize) -> &[u32] {
 }
 
 /// What is asked for, brought into the tone's range if it is to be.
-fn fit(asking: &Asking<'_>, greatest: f64) -> Vec<f64> {
-    match asking.darkness.range {
-        Range::Clip => asking.wanted.to_vec(),
+fn fit(tiles: &Tiles, darkness: &Darkness, greatest: f64) -> Vec<f64> {
+    match darkness.range {
+        Range::Clip => tiles.k.clone(),
         Range::Fit => {
-            let inside = || asking.wanted.iter().zip(asking.inside).filter(|(_, inside)| **inside).map(|(&v, _)| v);
-            let (low, high) = inside().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+            let inside = tiles.k.iter().zip(&tiles.inside).filter(|(_, inside)| **inside).map(|(&v, _)| v);
+            let (low, high) = inside.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+            // One tone alone has no range that could be stretched.
             if high - low <= NEAR {
-                return asking.wanted.to_vec();
+                return tiles.k.clone();
             }
             // Tiles that are inked all over reach the whole way.
-            let top = if asking.darkness.solid.is_some() { 1.0 } else { greatest };
-            asking.wanted.iter().map(|v| ((v - low) / (high - low)).clamp(0.0, 1.0) * top).collect()
+            let top = if darkness.solid.is_some() { 1.0 } else { greatest };
+            tiles.k.iter().map(|v| ((v - low) / (high - low)).clamp(0.0, 1.0) * top).collect()
         }
     }
 }
 
-/// The warning that part of the region asks for more than the tone prints.
-fn too_dark(asking: &Asking<'_>, fitted: &[f64], greatest: f64) -> Option<Diagnostic> {
-    let solid = asking.darkness.solid.unwrap_or(f64::INFINITY);
+/// The warning that part of the region asks for more than the tone prints, but less than is inked all over.
+fn too_dark(bed: &Bed<'_>, fitted: &[f64], greatest: f64, solid: f64) -> Option<Diagnostic> {
     let (mut count, mut beyond) = (0usize, 0usize);
-    for (&wanted, &standing) in fitted.iter().zip(asking.standing) {
+    for (&wanted, &standing) in fitted.iter().zip(&bed.tiles.standing) {
         if standing != Standing::Absent {
             count += 1;
             beyond += usize::from(wanted > greatest + SLIGHT && wanted < solid);
@@ -129,26 +136,22 @@ fn too_dark(asking: &Asking<'_>, fitted: &[f64], greatest: f64) -> Option<Diagno
     if beyond == 0 {
         return None;
     }
-    let percent = |share: f64| match share * 100.0 {
+    let share = match (beyond as f64 / count as f64 * 100.0).round() {
         percent if percent < 1.0 => "less than 1 %".to_owned(),
-        percent => format!("{} %", percent.round()),
+        percent => format!("{percent} %"),
     };
-    let message = format!(
-        "{} of `{}` asks for more than the tone prints, which is {}",
-        percent(beyond as f64 / count as f64),
-        asking.paint.name,
-        percent(greatest),
-    );
-    let hint = match asking.darkness.solid {
-        None => {
-            "a tighter pitch, a wider pen or more fills print darker; `solid: 0.9` inks the darkest tiles all over, \
-                 `range: fit` presses the picture into the tone's range"
-        }
-        Some(_) => "a lower `solid` inks more tiles all over; a tighter pitch, a wider pen or more fills print darker",
+    let (name, span) = (&bed.paint.name, bed.paint.tone.asked_span);
+    let message = format!("{share} of `{name}` asks for more than the tone prints");
+    let hint = if solid.is_finite() {
+        "a lower `solid` inks more tiles all over; a tighter pitch, a wider pen or more fills print darker"
+    } else {
+        "a tighter pitch, a wider pen or more fills print darker; `solid: 0.9` inks the darkest tiles all over; \
+         `range: fit` presses the picture into the tone's range"
     };
     Some(
-        Diagnostic::warning(Code::TooDark, asking.paint.tone.asked_span, message)
+        Diagnostic::warning(Code::TooDark, span, message)
+            .label(format!("prints up to {}", (greatest * 100.0).round() / 100.0))
             .hint(hint)
-            .note(asking.paint.span, "painted here"),
+            .note(bed.paint.span, "painted here"),
     )
 }

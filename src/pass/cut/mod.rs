@@ -12,11 +12,11 @@ pub(crate) mod voronoi;
 use rayon::prelude::*;
 
 use crate::diag::{Code, Diagnostic};
-use crate::geom::Point;
+use crate::geom::{Figure, Length, Pieces, Point};
 use crate::region::Region;
 use crate::scene::{Asked, Blend, Canvas, Edge, Paint, Shape};
-use crate::stage::{Angles, Graph, Layers, Sites, Standing, Tiles};
-use darkness::Asking;
+use crate::stage::{Angles, Graph, Layers, Sites, Standing, Tiles, Tiling};
+use darkness::Bed;
 use stamp::Stamp;
 use standing::Ground;
 
@@ -25,6 +25,9 @@ const CHUNK: usize = 1024;
 
 /// Values of k that leave 0 to 4 by less are rounding, not a mistake.
 const ROUNDING: f64 = 1e-9;
+
+/// Cells are convex.
+static NO_PIECES: Pieces = Pieces::NONE;
 
 /// The tiles of some neighbouring sites.
 #[derive(Default)]
@@ -79,33 +82,42 @@ pub fn cut(
     };
     let asked: Vec<f64> = field.iter().map(|&value| clamp(value, greatest)).collect();
     warnings.extend(clamped(paint, &field, &standing, greatest));
-    let rings: Vec<&[Point]> = chunks.iter().flat_map(Chunk::rings).collect();
+    let rings = chunks.iter().flat_map(Chunk::rings);
+    let blank = vec![Layers::new(0, 0.0); asked.len()];
+    let tiles = Tiles::new(rings, asked, blank, standing, inside).in_pieces(shaper.pieces());
+    let asked = &tiles.k;
     let (k, layers) = match &paint.tone.asked {
         Asked::K(_) => {
             let layers: Vec<Layers> = match paint.tone.blend {
                 Blend::Step => asked.iter().map(|&k| layers::step(k)).collect(),
                 Blend::Partial => asked.iter().map(|&k| layers::partial(k)).collect(),
-                Blend::Dither => layers::dither(&asked, graph),
+                Blend::Dither => layers::dither(asked, graph),
                 Blend::Contour => {
                     chunks.iter().flat_map(|chunk| &chunk.most).map(|&full| Layers::new(full, 0.0)).collect()
                 }
             };
-            (asked, layers)
+            (asked.clone(), layers)
         }
         Asked::Darkness(darkness) => {
-            let (wanted, rings, standing, inside) = (&asked, &rings, &standing, &inside);
-            let asking = Asking { paint, canvas, darkness, sites, graph, angles, rings, wanted, standing, inside };
-            let (layers, warning) = darkness::layers(&asking);
+            let bed = Bed { paint, canvas, sites, graph, angles, tiles: &tiles };
+            let (layers, warning) = darkness::layers(&bed, darkness);
             warnings.extend(warning);
             (layers.iter().map(|layers| f64::from(layers.full) + layers.part).collect(), layers)
         }
     };
     // A region off the canvas was warned of where it was found.
-    if !visible.is_empty() && standing.iter().all(|&standing| standing == Standing::Absent) {
+    if !visible.is_empty() && tiles.standing.iter().all(|&standing| standing == Standing::Absent) {
         let message = format!("`{}` has no tile on its region", paint.name);
         warnings.push(Diagnostic::warning(Code::NoTiles, paint.span, message));
     }
-    Tiles::new(rings, k, layers, standing, inside)
+    tiles.with_layers(k, layers)
+}
+
+/// The share of the paper that the tiles of a paint cover with ink, reckoned from their layers: the mean over the tiles
+/// whose sites lie in its region; 0 where there are none. Sites, links, angles and tiles belong to the paint.
+#[must_use]
+pub fn reckon(paint: &Paint, canvas: &Canvas, sites: &Sites, graph: &Graph, angles: &Angles, tiles: &Tiles) -> f64 {
+    darkness::reckon(&Bed { paint, canvas, sites, graph, angles, tiles })
 }
 
 /// The part of a paint's region that lies on the canvas: what is off the canvas is neither drawn nor measured.
@@ -127,14 +139,19 @@ fn cut_chunk(
 ) -> Chunk {
     let mut chunk = Chunk::default();
     let (mut ring, mut spare) = (Vec::new(), Vec::new());
+    let pieces = shaper.pieces();
+    let mut corners = Vec::new();
     for i in range {
         let site = sites.points[i];
         shaper.outline(i, &mut ring, &mut spare);
+        corners.clear();
+        corners.extend(pieces.corners(&ring));
+        let figure = Figure::new(&ring, pieces, &corners);
         let inside = ground.contains(site);
         chunk.inside.push(inside);
         chunk.standing.push(match paint.tone.edge {
-            Edge::Clip => ground.clip(&ring),
-            Edge::Whole => ground.whole(&ring),
+            Edge::Clip => ground.clip(figure),
+            Edge::Whole => ground.whole(figure),
             Edge::Centre if inside && !ring.is_empty() => Standing::Whole,
             Edge::Centre => Standing::Absent,
         });
@@ -190,15 +207,30 @@ fn clamped(paint: &Paint, field: &[f64], standing: &[Standing], greatest: f64) -
 enum Shaper<'a> {
     Stamp { stamp: Stamp, sites: &'a Sites, angles: &'a Angles },
     Cells(voronoi::Cells<'a>),
+    Tiling { tiling: Option<&'a Tiling>, inset: Length },
 }
 
 impl<'a> Shaper<'a> {
     fn new(paint: &Paint, sites: &'a Sites, graph: &'a Graph, angles: &'a Angles) -> Self {
         match &paint.tone.shape {
-            shape @ (Shape::Rect { .. } | Shape::Hexagon { .. }) => {
+            shape @ (Shape::Rect { .. }
+            | Shape::Hexagon { .. }
+            | Shape::Triangle { .. }
+            | Shape::Trapezoid { .. }
+            | Shape::Stamp { .. }) => {
                 Self::Stamp { stamp: Stamp::new(shape, &paint.tone.place, sites.spacing), sites, angles }
             }
             &Shape::Voronoi { inset, round } => Self::Cells(voronoi::Cells::new(sites, graph, inset, round)),
+            // Lowering lets only tilings come here, and placement makes their cells for this shape.
+            &Shape::Cell { inset } => Self::Tiling { tiling: sites.tiling.as_ref(), inset },
+        }
+    }
+
+    /// How outlines fall into convex pieces.
+    fn pieces(&self) -> &Pieces {
+        match self {
+            Self::Stamp { stamp, .. } => stamp.pieces(),
+            Self::Cells(_) | Self::Tiling { .. } => &NO_PIECES,
         }
     }
 
@@ -207,6 +239,13 @@ impl<'a> Shaper<'a> {
         match self {
             Self::Stamp { stamp, sites, angles } => stamp.outline(sites.points[tile], angles.0[tile], ring),
             Self::Cells(cells) => cells.outline(tile, ring, spare),
+            Self::Tiling { tiling, inset } => {
+                ring.clear();
+                ring.extend_from_slice(tiling.map_or(&[], |tiling| tiling.cell(tile)));
+                if *inset > Length::ZERO {
+                    voronoi::shrink(ring, inset.to_mm(), spare);
+                }
+            }
         }
     }
 }

@@ -1,16 +1,17 @@
 //! What is drawn where no tile is, before the tiles.
 //!
 //! A fill of its own runs over the whole region, its lines at the exact pitch and measured from the middle of the page, and
-//! is left out under the tiles. `nearest` continues the pattern of every tile over its Voronoi cell. Both end at the
-//! region's outline whatever the tiles do there.
+//! is left out under the tiles. `nearest` continues the pattern of every tile over its Voronoi cell, or of a tiling over
+//! the cell that the tile was drawn in from. Both end at the region's outline whatever the tiles do there.
 
 use rayon::prelude::*;
 
 use crate::geom::clip::{Frame, Profile, convex_clearance};
 use crate::geom::{Angle, Length, Point, ring_bounds};
 use crate::pass::cut::voronoi::Cells;
+use crate::pass::link;
 use crate::region::{FillRule, Region};
-use crate::scene::{Canvas, Fill, FillKind, Ground, Hatch};
+use crate::scene::{Canvas, Fill, FillKind, Ground, Hatch, Link, Shape};
 
 use super::budget::{BANK, DOT, Exceeded, LINE, PROFILE};
 use super::dashes::Dashes;
@@ -36,7 +37,21 @@ pub(super) fn draw(job: &Job<'_>, canvas: &Canvas) -> Result<Vec<Vec<Batch>>, Ex
 
 /// Hatches the gaps as the nearest tile is hatched. Tiles that are left out at the region's edge have gaps too.
 fn nearest(job: &Job<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
-    let cells = Cells::new(job.sites, job.graph, Length::ZERO, Length::ZERO);
+    let tiling = match job.paint.tone.shape {
+        Shape::Cell { .. } => job.sites.tiling.as_ref(),
+        Shape::Rect { .. }
+        | Shape::Hexagon { .. }
+        | Shape::Triangle { .. }
+        | Shape::Trapezoid { .. }
+        | Shape::Stamp { .. }
+        | Shape::Voronoi { .. } => None,
+    };
+    // Cells that share edges are not all the neighbours that bound a Voronoi cell.
+    let delaunay = match job.paint.tone.link {
+        Link::Delaunay => None,
+        Link::Edges => tiling.is_none().then(|| link::link(job.sites, Link::Delaunay)),
+    };
+    let cells = Cells::new(job.sites, delaunay.as_ref().unwrap_or(job.graph), Length::ZERO, Length::ZERO);
     let pens = job.paint.tone.fill.iter().filter_map(|fill| fill.kind.hatch());
     let margin = pens.map(|hatch| hatch.pen.to_mm() / 2.0).fold(0.0, f64::max);
     job.in_chunks(|scratch, tile, out| {
@@ -45,8 +60,14 @@ fn nearest(job: &Job<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
             return Ok(());
         }
         let (mut cell, mut spare) = (Vec::new(), Vec::new());
-        cells.outline(tile, &mut cell, &mut spare);
-        let is_gapless = job.tiles.is_drawn(tile) && cell.iter().all(|&p| convex_clearance(outline, p) >= 0.0);
+        match tiling {
+            Some(tiling) => cell.extend_from_slice(tiling.cell(tile)),
+            None => cells.outline(tile, &mut cell, &mut spare),
+        }
+        // Of an outline that is not convex corners alone do not tell.
+        let is_gapless = job.tiles.is_drawn(tile)
+            && job.tiles.figure(tile).is_convex()
+            && cell.iter().all(|&p| convex_clearance(outline, p) >= 0.0);
         let contact = job.bank.standing(ring_bounds(&cell).grown(margin));
         if is_gapless || contact == Contact::Outside {
             return Ok(());
@@ -173,7 +194,7 @@ impl Plane<'_> {
         self.job.budget.look(&mut scratch.looks, self.job.nearby.candidates(centre, radius))?;
         let mut is_free = true;
         self.job.nearby.near(centre, radius, |tile| {
-            is_free = is_free && convex_clearance(self.job.nearby.outline(tile), centre) <= -radius;
+            is_free = is_free && self.job.nearby.figure(tile).clearance(centre) <= -radius;
         });
         Ok(is_free)
     }
@@ -206,10 +227,10 @@ impl Plane<'_> {
             if high < first.1 || low > last.1 {
                 continue;
             }
-            scratch.area.set(self.job.nearby.outline(tile), &self.frame);
+            scratch.area.set(self.job.nearby.figure(tile), &self.frame);
             let start = band.partition_point(|line| line.1 < low);
             for (line, hidden) in band.iter().zip(&mut hidden).skip(start).take_while(|(line, _)| line.1 <= high) {
-                hidden.extend(scratch.area.span(line.1));
+                scratch.area.spans(line.1, |span| hidden.push(span));
                 scratch.looks += 1;
             }
             self.job.budget.look(&mut scratch.looks, PROFILE)?;

@@ -18,6 +18,7 @@ pub(in crate::pass) mod lattice;
 mod lines;
 mod nearby;
 mod palette;
+pub(in crate::pass) mod silhouette;
 mod solid;
 
 #[cfg(test)]

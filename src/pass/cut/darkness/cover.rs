@@ -2,19 +2,20 @@
 
 use std::collections::BTreeSet;
 
-use crate::geom::clip::convex_clearance;
 use crate::geom::{Point, ring_area};
-use crate::scene::{Ground, Paint, Stack};
+use crate::scene::{Ground, Shape, Stack};
 use crate::stage::{Graph, Sites};
 
-use super::ink;
-use crate::geom::Length;
+use super::{Bed, ink};
 
 /// Places that are looked at.
 const SAMPLES: usize = 1024;
 
 /// Depths that are told apart; whatever lies deeper counts as the last.
 const DEEPEST: usize = 16;
+
+/// Shares of the paper below it are rounding.
+const ROUNDING: f64 = 1e-6;
 
 /// Halvings in the search for the ink of a tile.
 const HALVINGS: usize = 30;
@@ -33,20 +34,41 @@ pub(super) struct Cover {
 }
 
 impl Cover {
-    /// Finds it for tiles of these outlines. Cells tell it by their area, stamps are looked for at some places of the
-    /// domain.
-    pub(super) fn new(paint: &Paint, sites: &Sites, graph: &Graph, rings: &[&[Point]], gain: Length) -> Self {
+    /// Finds it for the tiles of a paint. Cells tell it by their area, stamps are looked for at some places of the domain.
+    pub(super) fn new(bed: &Bed<'_>) -> Self {
+        let Bed { paint, sites, tiles, .. } = *bed;
         let mut depths = [0.0; DEEPEST + 1];
-        let extent = sites.extent.width() * sites.extent.height();
+        let area = |tile: usize| ring_area(tiles.outline(tile)).abs();
+        match &paint.tone.shape {
+            Shape::Voronoi { .. } => {
+                let extent = sites.extent.width() * sites.extent.height();
+                depths[1] = (0..tiles.len()).map(area).sum::<f64>() / extent;
+            }
+            Shape::Cell { inset } => {
+                // Cells of a tiling are taken to have a circle that touches all sides: drawn in by less, they grow alike.
+                let whole = |tile: usize| {
+                    let (area, round) = (area(tile), perimeter(tiles.outline(tile)));
+                    let grown = 1.0 + inset.to_mm() * round / (2.0 * area.max(f64::MIN_POSITIVE));
+                    area * grown * grown
+                };
+                depths[1] = (0..tiles.len()).map(area).sum::<f64>() / (0..tiles.len()).map(whole).sum::<f64>();
+            }
+            Shape::Rect { .. }
+            | Shape::Hexagon { .. }
+            | Shape::Triangle { .. }
+            | Shape::Trapezoid { .. }
+            | Shape::Stamp { .. } => sample(bed, &mut depths),
+        }
         if paint.tone.shape.is_cell() {
-            let covered = rings.iter().map(|ring| ring_area(ring).abs()).sum::<f64>() / extent;
-            depths[1] = if covered > 0.0 { covered.min(1.0) } else { 1.0 };
+            depths[1] = if depths[1] > 0.0 { depths[1].min(1.0) } else { 1.0 };
+            // Where rounding alone leaves something bare, nothing is.
+            if depths[1] > 1.0 - ROUNDING {
+                depths[1] = 1.0;
+            }
             depths[0] = 1.0 - depths[1];
-        } else {
-            sample(sites, graph, rings, &mut depths);
         }
         let ground = match &paint.tone.ground {
-            Some(Ground::Fill { fill, .. }) => ink::share(&fill.kind, gain),
+            Some(Ground::Fill { fill, .. }) => ink::share(&fill.kind, bed.canvas.gain),
             Some(Ground::Nearest) => {
                 depths[1] += depths[0];
                 depths[0] = 0.0;
@@ -112,14 +134,23 @@ impl Cover {
     }
 }
 
+fn perimeter(ring: &[Point]) -> f64 {
+    let ends = ring.iter().cycle().skip(1);
+    ring.iter().zip(ends).map(|(a, b)| a.distance(*b)).sum()
+}
+
 /// Looks how many stamps lie over places that are spread evenly over the domain.
-fn sample(sites: &Sites, graph: &Graph, rings: &[&[Point]], depths: &mut [f64; DEEPEST + 1]) {
-    let reach = |i: usize| rings[i].iter().map(|&corner| sites.points[i].distance_squared(corner)).fold(0.0, f64::max);
-    let Some(reach) = (0..rings.len()).map(reach).reduce(f64::max) else {
+fn sample(bed: &Bed<'_>, depths: &mut [f64; DEEPEST + 1]) {
+    let Bed { sites, graph, tiles, .. } = *bed;
+    let reach = |i: usize| {
+        let corners = tiles.outline(i).iter();
+        corners.map(|&corner| sites.points[i].distance_squared(corner)).fold(0.0, f64::max)
+    };
+    let Some(reach) = (0..tiles.len()).map(reach).reduce(f64::max) else {
         depths[1] = 1.0;
         return;
     };
-    let (domain, samples) = (sites.domain, SAMPLES.min(rings.len()));
+    let (domain, samples) = (sites.domain, SAMPLES.min(tiles.len()));
     let mut nearest = 0;
     let (mut seen, mut list) = (BTreeSet::new(), Vec::new());
     for i in 0..samples {
@@ -132,9 +163,11 @@ fn sample(sites: &Sites, graph: &Graph, rings: &[&[Point]], depths: &mut [f64; D
         seen.insert(nearest);
         list.push(nearest);
         let (mut next, mut depth) = (0, 0);
-        while let Some(&site) = list.get(next) {
+        while let Some(&site) = list.get(next)
+            && depth < DEEPEST
+        {
             next += 1;
-            depth += usize::from(convex_clearance(rings[site], place) > 0.0);
+            depth += usize::from(tiles.figure(site).clearance(place) > 0.0);
             for &neighbour in graph.neighbours(site) {
                 let neighbour = neighbour as usize;
                 if sites.points[neighbour].distance_squared(place) < reach && seen.insert(neighbour) {
@@ -142,7 +175,7 @@ fn sample(sites: &Sites, graph: &Graph, rings: &[&[Point]], depths: &mut [f64; D
                 }
             }
         }
-        depths[depth.min(DEEPEST)] += 1.0 / samples as f64;
+        depths[depth] += 1.0 / samples as f64;
     }
 }
 

@@ -2,17 +2,18 @@
 
 use std::f64::consts::PI;
 
-use crate::geom::clip::{Frame, Profile, TOLERANCE, convex_clearance};
+use crate::geom::clip::{Frame, TOLERANCE};
 use crate::geom::{Length, ring_area};
 use crate::pass::draw::job::direction;
 use crate::pass::draw::lattice::Lattice;
+use crate::pass::draw::silhouette::Silhouette;
 use crate::pass::thin::{Thinned, thinned};
-use crate::scene::{Fill, FillKind, Hatch, Stack};
+use crate::scene::{Asked, Fill, FillKind, Hatch, Stack};
 use crate::stage::Layers;
 
 use super::cover::Cover;
 use super::ink::{self, DOTS};
-use super::{Asking, LAYERS, NEAR};
+use super::{Bed, LAYERS, NEAR};
 
 /// So many lines over a cell, or dots along one side of it, lie evenly enough that they need not be counted.
 const FINE: f64 = 8.0;
@@ -43,7 +44,7 @@ enum Yard {
 
 /// Chooses layers, one tile after the other.
 pub(super) struct Reckoner<'a> {
-    asking: &'a Asking<'a>,
+    bed: &'a Bed<'a>,
     fills: &'a [Fill],
     yard: Yard,
     /// What tiles hold of a full layer, against a layer without end: lines come in whole numbers, dots are not cut.
@@ -51,22 +52,22 @@ pub(super) struct Reckoner<'a> {
     /// The share of a tile that 0 to 4 full layers cover.
     levels: [f64; LAYERS + 1],
     areas: Vec<f64>,
-    profile: Profile,
+    seen: Silhouette,
 }
 
 impl<'a> Reckoner<'a> {
-    pub(super) fn new(asking: &'a Asking<'a>, cover: &Cover) -> Self {
-        let tone = &asking.paint.tone;
-        let areas: Vec<f64> = asking.rings.iter().map(|ring| ring_area(ring).abs()).collect();
-        let extent = asking.sites.extent.width() * asking.sites.extent.height();
+    pub(super) fn new(bed: &'a Bed<'a>, cover: &Cover) -> Self {
+        let tone = &bed.paint.tone;
+        let areas: Vec<f64> = (0..bed.tiles.len()).map(|tile| ring_area(bed.tiles.outline(tile)).abs()).collect();
+        let extent = bed.sites.extent.width() * bed.sites.extent.height();
         let radius = (extent * cover.covered() / areas.len().max(1) as f64 / PI).sqrt();
         let is_overlapped = !tone.shape.is_cell() && tone.stack == Stack::Cover && cover.depth() > OVERLAPPING;
         let yard = if is_overlapped && radius > 0.0 { Yard::Disc(radius) } else { Yard::Tile };
         let (held, levels) = ([1.0; LAYERS], [0.0; LAYERS + 1]);
-        let mut reckoner = Self { asking, fills: &tone.fill, yard, held, levels, areas, profile: Profile::default() };
+        let mut reckoner = Self { bed, fills: &tone.fill, yard, held, levels, areas, seen: Silhouette::default() };
         let held = [1, 2, 3, 4].map(|number| reckoner.mean_held(number));
         reckoner.held = held;
-        reckoner.levels = ink::levels(&tone.fill, asking.canvas.gain, &held);
+        reckoner.levels = ink::levels(&tone.fill, bed.canvas.gain, &held);
         reckoner
     }
 
@@ -91,6 +92,21 @@ impl<'a> Reckoner<'a> {
         let drawn = if part > NEAR { self.drawn(tile, full as u8 + 1, part) } else { 0.0 };
         let part = if drawn > 0.0 { part } else { 0.0 };
         (Layers::new(full as u8, part), levels[full] + room * drawn)
+    }
+
+    /// The share of ink that a tile has of its layers.
+    pub(super) fn ink(&mut self, tile: usize, layers: Layers) -> f64 {
+        if layers.is_solid {
+            return 1.0;
+        }
+        let full = usize::from(layers.full).min(LAYERS);
+        let Some(&above) = self.levels.get(full + 1) else { return self.levels[full] };
+        let drawn = match self.bed.paint.tone.asked {
+            _ if layers.part <= NEAR => 0.0,
+            Asked::K(_) => layers.part,
+            Asked::Darkness(_) => self.drawn(tile, full as u8 + 1, layers.part),
+        };
+        self.levels[full] + (above - self.levels[full]) * drawn
     }
 
     /// What of a full layer is drawn in a tile if it is thinned to `part`: about that much, but in whole lines or dots.
@@ -143,7 +159,7 @@ impl<'a> Reckoner<'a> {
     /// What a tile holds of parallel strokes, against strokes without end at the same pitch.
     fn lines(&mut self, tile: usize, number: u8, hatch: &Hatch) -> f64 {
         let (pitch, area) = (hatch.pitch.to_mm(), self.yard_area(tile));
-        let is_cell = self.asking.paint.tone.shape.is_cell();
+        let is_cell = self.bed.paint.tone.shape.is_cell();
         let is_fine = area > (FINE * pitch) * (FINE * pitch);
         if area <= 0.0 || (is_cell && is_fine) {
             return 1.0;
@@ -153,7 +169,11 @@ impl<'a> Reckoner<'a> {
             return pitch / lattice.step();
         }
         let chord = |v: f64| match self.yard {
-            Yard::Tile => self.profile.span(v).map_or(0.0, |(start, end)| end - start),
+            Yard::Tile => {
+                let mut length = 0.0;
+                self.seen.spans(v, |(start, end)| length += end - start);
+                length
+            }
             Yard::Disc(radius) => 2.0 * (radius * radius - v * v).max(0.0).sqrt(),
         };
         // Ink in lengths of stroke.
@@ -173,18 +193,18 @@ impl<'a> Reckoner<'a> {
             return 0.0;
         }
         let lines = self.lattice(tile, 1, hatch);
-        let along = self.profile.along();
-        let row = if self.asking.paint.tone.shape.is_cell() {
+        let along = self.seen.along();
+        let row = if self.bed.paint.tone.shape.is_cell() {
             Lattice::cell(along, 0.0, spacing)
         } else {
             Lattice::stamp(along, spacing, DOT_INSET, 1)
         };
         let [u, v] = DOTS[usize::from(number) - 1];
         let inner = |(low, high): (f64, f64)| (low + radius, high - radius);
-        let (lines, row) = (lines.moved(v).over(inner(self.profile.across())), row.moved(u).over(inner(along)));
+        let (lines, row) = (lines.moved(v).over(inner(self.seen.across())), row.moved(u).over(inner(along)));
         let frame = self.frame(tile, 1);
         let is_whole = |u: f64, v: f64| match self.yard {
-            Yard::Tile => convex_clearance(self.asking.rings[tile], frame.page(u, v)) >= radius - TOLERANCE,
+            Yard::Tile => self.bed.tiles.figure(tile).clearance(frame.page(u, v)) >= radius - TOLERANCE,
             Yard::Disc(yard) => u * u + v * v <= (yard - radius).max(0.0) * (yard - radius).max(0.0),
         };
         let most = lines.count() * row.count();
@@ -197,17 +217,17 @@ impl<'a> Reckoner<'a> {
     }
 
     fn frame(&self, tile: usize, number: u8) -> Frame {
-        Frame::new(self.asking.sites.points[tile], direction(self.asking.angles.0[tile], number))
+        Frame::new(self.bed.sites.points[tile], direction(self.bed.angles.0[tile], number))
     }
 
     /// Where the lines of a layer lie in a tile, whose profile is taken.
     fn lattice(&mut self, tile: usize, number: u8, hatch: &Hatch) -> Lattice {
         let frame = self.frame(tile, number);
-        self.profile.set(self.asking.rings[tile], &frame);
-        if self.asking.paint.tone.shape.is_cell() {
-            Lattice::cell(self.profile.across(), 0.0, hatch.pitch.to_mm())
+        self.seen.set(self.bed.tiles.figure(tile), &frame);
+        if self.bed.paint.tone.shape.is_cell() {
+            Lattice::cell(self.seen.across(), 0.0, hatch.pitch.to_mm())
         } else {
-            Lattice::stamp(self.profile.across(), hatch.pitch.to_mm(), hatch.inset, number)
+            Lattice::stamp(self.seen.across(), hatch.pitch.to_mm(), hatch.inset, number)
         }
     }
 }
