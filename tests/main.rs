@@ -6,6 +6,7 @@ mod bad_input;
 mod cases;
 mod cli;
 mod codes;
+mod darkness;
 mod determinism;
 mod documents;
 mod examples;

@@ -38,3 +38,31 @@ fn farther(distance: Length, share: f64) -> Length {
     // No tile is a thousand kilometres wide.
     (distance / share).min(Length::mm(1e9))
 }
+
+#[cfg(test)]
+#[allow(clippy::panic)]
+mod tests {
+    use super::*;
+    use crate::scene::Cap;
+
+    #[test]
+    fn what_is_thinned_keeps_its_share_of_marks() {
+        let (pitch, pen) = (Length::mm(0.5), Length::mm(0.1));
+        let hatch = Hatch { pitch, pen, inset: 0.5, shortest: Length::ZERO, cap: Cap::Butt };
+        let dots = FillKind::Dots { hatch, spacing: Length::mm(0.8), radius: Length::mm(0.1) };
+        for part in [0.01, 0.25, 1.0] {
+            let Thinned { kind: FillKind::Lines(lines), share } = thinned(&FillKind::Lines(hatch), 2, part) else {
+                panic!("lines stay lines");
+            };
+            assert!((pitch / lines.pitch - part).abs() < 1e-12 && (share - 1.0).abs() < 1e-12);
+            let Thinned { kind: FillKind::Dots { hatch, spacing, .. }, share } = thinned(&dots, 1, part) else {
+                panic!("dots stay dots");
+            };
+            assert!((pitch / hatch.pitch * (Length::mm(0.8) / spacing) - part).abs() < 1e-12);
+            assert!((share - 1.0).abs() < 1e-12);
+            assert!((thinned(&dots, 3, part).share - part).abs() < 1e-12);
+        }
+        let Thinned { kind, .. } = thinned(&FillKind::Lines(hatch), 1, 0.0);
+        assert!(kind.hatch().is_some_and(|hatch| hatch.pitch.to_mm().is_finite()));
+    }
+}

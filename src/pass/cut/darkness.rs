@@ -155,3 +155,90 @@ fn too_dark(bed: &Bed<'_>, fitted: &[f64], greatest: f64, solid: f64) -> Option<
             .note(bed.paint.span, "painted here"),
     )
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::field::Function;
+    use crate::geom::Length;
+    use crate::pass::fixture::{canvas, paint};
+    use crate::pass::{cut, link, place, turn};
+    use crate::region::Region;
+    use crate::scene::{AngleRule, Asked, Limits, Placement, Shape};
+
+    fn cells(field: Field, range: Range, solid: Option<f64>) -> (Canvas, Paint) {
+        let canvas = canvas(4.0, 4.0);
+        let place = Placement::Poisson { radius: Length::mm(0.3), tries: 30, density: None };
+        let mut paint = paint(&canvas, place, AngleRule::Bfs { candidates: 360 });
+        paint.tone.shape = Shape::Voronoi { inset: Length::ZERO, round: Length::ZERO };
+        paint.tone.bleed = None;
+        paint.tone.asked = Asked::Darkness(Darkness { field, range, solid });
+        (canvas, paint)
+    }
+
+    fn tiles(paint: &Paint, canvas: &Canvas) -> (Tiles, f64, Vec<Diagnostic>) {
+        let sites = place::place(paint, canvas, &Limits::default()).unwrap();
+        let graph = link::link(&sites, paint.tone.link);
+        let angles = turn::turn(paint, &sites, &graph);
+        let mut warnings = Vec::new();
+        let tiles = cut::cut(paint, canvas, &sites, &graph, &angles, &mut warnings);
+        let ink = cut::reckon(paint, canvas, &sites, &graph, &angles, &tiles);
+        (tiles, ink, warnings)
+    }
+
+    fn across(start: f64, end: f64) -> Field {
+        Field::new(Node::Linear { from: Point::default(), to: Point::new(4.0, 0.0), start, end })
+    }
+
+    #[test]
+    fn tiles_together_have_the_ink_that_is_asked_for() {
+        // Lines of 0.005 mm at 0.08 mm cover a sixteenth of the paper.
+        for asked in [0.01, 0.05, 0.13, 0.2] {
+            let (canvas, paint) = cells(Field::constant(asked), Range::Clip, None);
+            let (_, ink, warnings) = tiles(&paint, &canvas);
+            assert!((ink - asked).abs() < 0.004, "{asked}: {ink}");
+            assert!(warnings.is_empty());
+        }
+    }
+
+    #[test]
+    fn a_moved_outline_changes_no_tile() {
+        let (canvas, mut paint) = cells(across(0.0, 0.2), Range::Clip, None);
+        let (whole, ..) = tiles(&paint, &canvas);
+        paint.region = Region::circle(Point::new(2.0, 2.0), Length::mm(0.9));
+        let (part, ..) = tiles(&paint, &canvas);
+        assert_eq!(whole.layers, part.layers);
+    }
+
+    #[test]
+    fn what_is_too_dark_is_told_and_inked_all_over_or_fitted() {
+        let (canvas, paint) = cells(across(0.0, 1.0), Range::Clip, None);
+        let (clipped, _, warnings) = tiles(&paint, &canvas);
+        assert_eq!(warnings.len(), 1);
+        assert_eq!(warnings[0].code, Code::TooDark);
+        assert!(warnings[0].message.starts_with("77 %") || warnings[0].message.starts_with("78 %"), "{warnings:?}");
+        assert!(clipped.layers.iter().all(|layers| !layers.is_solid));
+
+        let (canvas, paint) = cells(across(0.0, 1.0), Range::Clip, Some(0.5));
+        let (solid, ..) = tiles(&paint, &canvas);
+        let black = solid.layers.iter().filter(|layers| layers.is_solid).count() as f64 / solid.len() as f64;
+        assert!((black - 0.5).abs() < 0.05, "{black}");
+
+        let (canvas, paint) = cells(across(0.4, 0.9), Range::Fit, None);
+        let (fitted, _, warnings) = tiles(&paint, &canvas);
+        assert!(warnings.is_empty());
+        assert!(fitted.k.iter().any(|&k| k > 3.9) && fitted.k.contains(&0.0));
+        assert!(fitted.layers.iter().filter(|layers| layers.full == 4).count() < fitted.len() / 8);
+    }
+
+    #[test]
+    fn a_field_is_looked_at_all_over_a_tile() {
+        let ring = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)].map(|(x, y)| Point::new(x, y));
+        let hill = Field::new(Node::Unary(Function::Abs, across(-1.0, 1.0)));
+        // The site lies where the field is 0.5, its corners reach from 1 to 0.
+        let found = mean(&hill, Point::new(1.0, 1.0), &ring);
+        assert!((found - 0.5).abs() < 1e-9, "{found}");
+        assert!(mean(&hill, Point::new(2.0, 1.0), &ring) > 0.0);
+    }
+}

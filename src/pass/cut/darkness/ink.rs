@@ -84,3 +84,65 @@ fn dotted(pitch: Length, spacing: Length, radius: Length, places: &[[f64; 2]]) -
     let inked = (0..SAMPLES).flat_map(|j| (0..SAMPLES).map(move |i| (i, j)));
     inked.filter(|&(i, j)| is_inked(sample(i), sample(j))).count() as f64 / (side * side)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Cap;
+
+    fn hatch(pitch: f64, pen: f64) -> Hatch {
+        Hatch { pitch: Length::mm(pitch), pen: Length::mm(pen), inset: 0.5, shortest: Length::ZERO, cap: Cap::Butt }
+    }
+
+    fn fill(kind: FillKind) -> Fill {
+        Fill { kind, ink: None }
+    }
+
+    fn dots(radius: f64) -> Fill {
+        fill(FillKind::Dots { hatch: hatch(1.0, 0.1), spacing: Length::mm(1.0), radius: Length::mm(radius) })
+    }
+
+    fn levels_of(fills: &[Fill]) -> [f64; 5] {
+        levels(fills, Length::ZERO, &[1.0; 4])
+    }
+
+    fn near(found: [f64; 5], wanted: [f64; 5]) {
+        for (found, wanted) in found.iter().zip(wanted) {
+            assert!((found - wanted).abs() < 1e-9, "{found} instead of {wanted}");
+        }
+    }
+
+    #[test]
+    fn crossed_lines_leave_the_product_bare() {
+        let lines = fill(FillKind::Lines(hatch(1.0, 0.25)));
+        near(levels_of(&[lines.clone()]), [0.0, 0.25, 0.4375, 0.578_125, 0.683_593_75]);
+        near(levels_of(&[lines, fill(FillKind::Solid)]), [0.0, 0.25, 1.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn ink_that_spreads_widens_both_edges() {
+        let dash = |gain| {
+            let kind = FillKind::Dashes { hatch: hatch(1.0, 0.2), dash: Length::mm(0.5), gap: Length::mm(0.5) };
+            share(&kind, Length::mm(gain))
+        };
+        assert!((dash(0.0) - 0.1).abs() < 1e-12);
+        assert!((dash(0.05) - 0.3 * 0.6).abs() < 1e-12);
+        assert!((dash(2.0) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn dots_add_up_until_they_touch() {
+        let one = PI * 0.04;
+        near(levels_of(&[dots(0.2)]), [0.0, one, 2.0 * one, 3.0 * one, 4.0 * one]);
+        let large = levels_of(&[dots(0.45)]);
+        assert!((large[1] - PI * 0.2025).abs() < 1e-9);
+        assert!(large[2] < 2.0 * large[1] - 0.2 && large[2] > large[1] + 0.2, "{large:?}");
+        near(levels_of(&[dots(2.0)]), [0.0, 1.0, 1.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn what_tiles_do_not_hold_is_left_out() {
+        let found = levels(&[fill(FillKind::Lines(hatch(1.0, 0.5)))], Length::ZERO, &[0.8, 1.0, 1.0, 1.0]);
+        near(found, [0.0, 0.4, 0.7, 0.85, 0.925]);
+    }
+}
