@@ -45,8 +45,6 @@ pub(crate) struct Error {
     pub(crate) mean: f64,
     /// The mean of the differences: above 0 where the page is too dark.
     pub(crate) bias: f64,
-    /// The greatest absolute difference.
-    pub(crate) greatest: f64,
 }
 
 /// Compares a drawing with the darkness that was asked for, clamped to `greatest`, both blurred by a square box of
@@ -59,16 +57,15 @@ pub(crate) fn error(drawing: &Drawing, asked: &Field, greatest: f64, side: f64) 
     let wanted: Vec<f64> = (0..width * height).map(|i| asked.at(place(i)).clamp(0.0, greatest)).collect();
     let (wanted, found) = (Sums::new(width, &wanted), Sums::new(width, &ink(&pixels)));
     let side = (side / step).round() as usize;
-    let (mut sum, mut bias, mut most, mut count) = (0.0, 0.0, 0.0f64, 0.0);
+    let (mut sum, mut bias, mut count) = (0.0, 0.0, 0.0);
     for y in 0..=height - side {
         for x in 0..=width - side {
             let (x, y) = ([x, x + side], [y, y + side]);
             let off = found.mean(x, y) - wanted.mean(x, y);
             sum += off.abs();
             bias += off;
-            most = most.max(off.abs());
             count += 1.0;
         }
     }
-    Error { mean: sum / count, bias: bias / count, greatest: most }
+    Error { mean: sum / count, bias: bias / count }
 }

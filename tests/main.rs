@@ -10,6 +10,7 @@ mod darkness;
 mod determinism;
 mod documents;
 mod examples;
+mod gallery;
 mod ink;
 mod later;
 mod support;

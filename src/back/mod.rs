@@ -9,7 +9,9 @@ pub mod metadata;
 mod number;
 mod outline;
 mod path;
+pub mod pdf;
 mod pieces;
+pub mod plot;
 pub mod png;
 pub mod raster;
 pub mod svg;
@@ -28,6 +30,7 @@ pub(crate) mod samples {
         Page {
             width: Length::mm(width),
             height: Length::mm(height),
+            bleed: Length::ZERO,
             pixels: [(width * 10.0) as u32, (height * 10.0) as u32],
             dpi: 254.0,
             paper: Some(Colour::WHITE),

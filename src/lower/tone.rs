@@ -499,9 +499,16 @@ impl ToneValue {
         }
         let (Some((gain, span)), Some(fills)) = (cx.gain, self.fill_list()) else { return whole };
         let widths = fills.iter().filter_map(|fill| match &fill.kind {
-            FillKind::Lines(hatch) | FillKind::Dashes { hatch, .. } => Some(hatch.pen),
             FillKind::Dots { radius, .. } => Some(*radius * 2.0),
-            FillKind::Solid => None,
+            FillKind::Lines(_)
+            | FillKind::Dashes { .. }
+            | FillKind::Crosses { .. }
+            | FillKind::Arcs(_)
+            | FillKind::Waves { .. }
+            | FillKind::Scribble { .. }
+            | FillKind::Nawaami { .. }
+            | FillKind::Motif { .. }
+            | FillKind::Solid => fill.kind.hatch().map(|hatch| hatch.pen),
         });
         let Some(pen) = widths.reduce(Length::min).filter(|&pen| gain > pen) else { return whole };
         let message =

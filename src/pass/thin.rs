@@ -1,7 +1,7 @@
 //! Thinned layers: what is drawn of a layer that a tone's darkness asks for only in part.
 
 use crate::geom::Length;
-use crate::scene::{FillKind, Hatch};
+use crate::scene::FillKind;
 
 /// A layer that was thinned.
 pub(super) struct Thinned {
@@ -13,24 +13,33 @@ pub(super) struct Thinned {
 
 /// Thins layer `number` of a tile to `part` of its ink, above 0 and at most 1.
 ///
-/// Strokes stand farther apart. So do the dots of a first layer, both ways alike; those of later layers stand between
-/// them, and lines of them are left out.
+/// Strokes stand farther apart. So do the dots, crosses and figures of a first layer, both ways alike; those of later layers
+/// stand between them, and rows of them are left out.
 pub(super) fn thinned(kind: &FillKind, number: u8, part: f64) -> Thinned {
     let part = part.max(f64::MIN_POSITIVE);
-    let wider = |hatch: &Hatch, by: f64| Hatch { pitch: farther(hatch.pitch, by), ..*hatch };
-    match kind {
-        FillKind::Lines(hatch) => Thinned { kind: FillKind::Lines(wider(hatch, part)), share: 1.0 },
-        FillKind::Dashes { hatch, dash, gap } => {
-            let kind = FillKind::Dashes { hatch: wider(hatch, part), dash: *dash, gap: *gap };
-            Thinned { kind, share: 1.0 }
+    let mut kind = kind.clone();
+    let share = match &mut kind {
+        FillKind::Lines(hatch)
+        | FillKind::Arcs(hatch)
+        | FillKind::Dashes { hatch, .. }
+        | FillKind::Waves { hatch, .. }
+        | FillKind::Scribble { hatch, .. }
+        | FillKind::Nawaami { hatch, .. } => {
+            hatch.pitch = farther(hatch.pitch, part);
+            1.0
         }
-        FillKind::Dots { hatch, spacing, radius } if number <= 1 => {
-            let by = part.sqrt();
-            let kind = FillKind::Dots { hatch: wider(hatch, by), spacing: farther(*spacing, by), radius: *radius };
-            Thinned { kind, share: 1.0 }
+        FillKind::Dots { hatch, spacing, .. }
+        | FillKind::Crosses { hatch, spacing, .. }
+        | FillKind::Motif { hatch, spacing, .. }
+            if number <= 1 =>
+        {
+            hatch.pitch = farther(hatch.pitch, part.sqrt());
+            *spacing = farther(*spacing, part.sqrt());
+            1.0
         }
-        FillKind::Dots { .. } | FillKind::Solid => Thinned { kind: kind.clone(), share: part },
-    }
+        FillKind::Dots { .. } | FillKind::Crosses { .. } | FillKind::Motif { .. } | FillKind::Solid => part,
+    };
+    Thinned { kind, share }
 }
 
 /// A distance that leaves room for a share of the marks.
@@ -43,7 +52,7 @@ fn farther(distance: Length, share: f64) -> Length {
 #[allow(clippy::panic)]
 mod tests {
     use super::*;
-    use crate::scene::Cap;
+    use crate::scene::{Cap, Hatch};
 
     #[test]
     fn what_is_thinned_keeps_its_share_of_marks() {

@@ -5,8 +5,12 @@
 //! order of their sites, so that the drawing does not depend on threads. [`Assembly`] lays paints and outlines over each
 //! other.
 
+mod arcs;
 mod assemble;
 mod budget;
+mod crosses;
+mod curves;
+mod cutout;
 mod dashes;
 mod dots;
 mod edge;
@@ -16,15 +20,20 @@ pub(in crate::pass) mod job;
 mod knockout;
 pub(in crate::pass) mod lattice;
 mod lines;
+mod motif;
+mod nawaami;
 mod nearby;
 mod palette;
+mod scribble;
 pub(in crate::pass) mod silhouette;
 mod solid;
+mod waves;
 
 #[cfg(test)]
 mod tests;
 
 pub use assemble::{Assembly, Item, Setting, items};
+pub use nawaami::tangents;
 
 use crate::diag::Diagnostic;
 use crate::drawing::Layer;

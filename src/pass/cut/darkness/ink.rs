@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 
 use crate::geom::Length;
-use crate::scene::{Fill, FillKind, Hatch};
+use crate::scene::{Fill, FillKind};
 
 use super::super::layers::MOST;
 
@@ -19,15 +19,46 @@ pub(super) const DOTS: [[f64; 2]; 4] = [[0.0, 0.0], [0.5, 0.5], [0.5, 0.0], [0.0
 /// The share of the paper that one layer of a fill covers at its own pitch, in [0, 1]. `gain` is how far ink spreads beyond
 /// every edge.
 pub(super) fn share(kind: &FillKind, gain: Length) -> f64 {
-    let width = |hatch: &Hatch| hatch.pen + gain * 2.0;
     match kind {
-        FillKind::Lines(hatch) => (width(hatch) / hatch.pitch).min(1.0),
-        FillKind::Dashes { hatch, dash, gap } => {
-            (width(hatch) / hatch.pitch).min(1.0) * ((*dash + gain * 2.0) / (*dash + *gap)).min(1.0)
-        }
         FillKind::Dots { hatch, spacing, radius } => dotted(hatch.pitch, *spacing, *radius + gain, &DOTS[..1]),
-        FillKind::Solid => 1.0,
+        // Loops lie on loops as they come, so that each leaves the same share of what is bare.
+        FillKind::Scribble { .. } => 1.0 - libm::exp(-spread(kind, gain).coverage()),
+        FillKind::Lines(_)
+        | FillKind::Dashes { .. }
+        | FillKind::Crosses { .. }
+        | FillKind::Arcs(_)
+        | FillKind::Waves { .. }
+        | FillKind::Nawaami { .. }
+        | FillKind::Motif { .. }
+        | FillKind::Solid => spread(kind, gain).coverage().min(1.0),
     }
+}
+
+/// A fill as its ink spreads.
+fn spread(kind: &FillKind, gain: Length) -> FillKind {
+    let mut spread = kind.clone();
+    let by = gain * 2.0;
+    match &mut spread {
+        FillKind::Lines(hatch)
+        | FillKind::Arcs(hatch)
+        | FillKind::Waves { hatch, .. }
+        | FillKind::Scribble { hatch, .. }
+        | FillKind::Nawaami { hatch, .. }
+        | FillKind::Motif { hatch, .. } => hatch.pen += by,
+        FillKind::Dashes { hatch, dash, gap } => {
+            hatch.pen += by;
+            let grown = by.min(*gap);
+            *dash += grown;
+            *gap = *gap - grown;
+        }
+        FillKind::Crosses { hatch, size, .. } => {
+            hatch.pen += by;
+            *size += by;
+        }
+        FillKind::Dots { radius, .. } => *radius += gain,
+        FillKind::Solid => {}
+    }
+    spread
 }
 
 /// The share of a tile that 0 to 4 full layers cover, which never falls. `held` is what tiles hold of each layer, against
@@ -35,25 +66,38 @@ pub(super) fn share(kind: &FillKind, gain: Length) -> f64 {
 pub(super) fn levels(fills: &[Fill], gain: Length, held: &[f64; MOST as usize]) -> [f64; MOST as usize + 1] {
     let mut levels = [0.0; MOST as usize + 1];
     let mut bare = 1.0;
-    // The dots of one fill that were laid so far.
-    let mut dots: Option<(&FillKind, f64, Vec<[f64; 2]>)> = None;
+    // The fill whose marks stand between each other: what was bare before it, the numbers of its layers.
+    let mut laid: Option<(&FillKind, f64, Vec<usize>)> = None;
     for n in 1..levels.len() {
         let Some(fill) = fills.get((n - 1).min(fills.len().saturating_sub(1))) else { return levels };
-        match &fill.kind {
-            kind @ FillKind::Dots { hatch, spacing, radius } => {
-                let (before, mut places) = match dots.take() {
-                    Some((laid, before, places)) if laid == kind => (before, places),
+        let kind = &fill.kind;
+        let held_by = |layers: &[usize]| layers.iter().map(|&layer| held[layer - 1]).sum::<f64>() / layers.len() as f64;
+        match kind {
+            FillKind::Dots { .. } | FillKind::Crosses { .. } | FillKind::Motif { .. } => {
+                let (before, mut layers) = match laid.take() {
+                    Some((earlier, before, layers)) if earlier == kind => (before, layers),
                     _ => (bare, Vec::new()),
                 };
-                places.push(DOTS[n - 1]);
-                let inked =
-                    dotted(hatch.pitch, *spacing, *radius + gain, &places) * held[..n].iter().sum::<f64>() / n as f64;
-                bare = before * (1.0 - inked).clamp(0.0, 1.0);
-                dots = Some((kind, before, places));
+                layers.push(n);
+                let inked = match kind {
+                    FillKind::Dots { hatch, spacing, radius } => {
+                        let places: Vec<[f64; 2]> = layers.iter().map(|&layer| DOTS[layer - 1]).collect();
+                        dotted(hatch.pitch, *spacing, *radius + gain, &places)
+                    }
+                    _ => (share(kind, gain) * layers.len() as f64).min(1.0),
+                };
+                bare = before * (1.0 - inked * held_by(&layers)).clamp(0.0, 1.0);
+                laid = Some((kind, before, layers));
             }
-            kind @ (FillKind::Lines(_) | FillKind::Dashes { .. } | FillKind::Solid) => {
+            FillKind::Lines(_)
+            | FillKind::Dashes { .. }
+            | FillKind::Arcs(_)
+            | FillKind::Waves { .. }
+            | FillKind::Scribble { .. }
+            | FillKind::Nawaami { .. }
+            | FillKind::Solid => {
                 bare *= (1.0 - held[n - 1] * share(kind, gain)).clamp(0.0, 1.0);
-                dots = None;
+                laid = None;
             }
         }
         levels[n] = f64::max(levels[n - 1], 1.0 - bare);
@@ -88,7 +132,7 @@ fn dotted(pitch: Length, spacing: Length, radius: Length, places: &[[f64; 2]]) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Cap;
+    use crate::scene::{Cap, Hatch};
 
     fn hatch(pitch: f64, pen: f64) -> Hatch {
         Hatch { pitch: Length::mm(pitch), pen: Length::mm(pen), inset: 0.5, shortest: Length::ZERO, cap: Cap::Butt }

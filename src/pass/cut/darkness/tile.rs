@@ -27,6 +27,10 @@ const OVERLAPPING: f64 = 1.05;
 /// Where the outermost dots of a line of a stamp lie, in steps from its edge.
 const DOT_INSET: f64 = 0.5;
 
+/// Crosses lose about the share of their arms that is their size over so many radii of the tile: across an edge of length
+/// p an eighth of the square of an arm's length is cut off for each millimetre, and p / area is 2 / radius.
+const ARMS_LOST: f64 = 6.0;
+
 /// The most dots that are counted in a tile.
 const MOST_DOTS: f64 = 10_000.0;
 
@@ -114,13 +118,18 @@ impl<'a> Reckoner<'a> {
         let held = self.held[usize::from(number) - 1];
         let Thinned { kind, share } = thinned(self.kind(number), number, part);
         match &kind {
-            FillKind::Lines(hatch) | FillKind::Dashes { hatch, .. } => part * self.lines(tile, number, hatch) / held,
+            FillKind::Lines(hatch)
+            | FillKind::Dashes { hatch, .. }
+            | FillKind::Waves { hatch, .. }
+            | FillKind::Scribble { hatch, .. }
+            | FillKind::Nawaami { hatch, .. } => part * self.lines(tile, number, hatch) / held,
             FillKind::Dots { hatch, spacing, radius } if number == 1 => {
                 let area = hatch.pitch.to_mm() * spacing.to_mm();
                 let is_few = self.yard_area(tile) < FINE * FINE * area;
                 part * if is_few { self.dots(tile, number, hatch, *spacing, *radius) / held } else { 1.0 }
             }
-            FillKind::Dots { .. } => part,
+            // A row of them, or an arc, is cut anywhere.
+            FillKind::Dots { .. } | FillKind::Crosses { .. } | FillKind::Motif { .. } | FillKind::Arcs(_) => part,
             FillKind::Solid => f64::from(u8::from(share >= LEAST)),
         }
     }
@@ -139,9 +148,18 @@ impl<'a> Reckoner<'a> {
                 continue;
             }
             sum += match self.kind(number) {
-                FillKind::Lines(hatch) | FillKind::Dashes { hatch, .. } => self.lines(tile, number, hatch),
+                FillKind::Lines(hatch)
+                | FillKind::Dashes { hatch, .. }
+                | FillKind::Waves { hatch, .. }
+                | FillKind::Scribble { hatch, .. }
+                | FillKind::Nawaami { hatch, .. } => self.lines(tile, number, hatch),
                 FillKind::Dots { hatch, spacing, radius } => self.dots(tile, number, hatch, *spacing, *radius),
-                FillKind::Solid => 1.0,
+                // The arms of a cross end where the tile does; its neighbour takes none of them.
+                FillKind::Crosses { size, .. } => {
+                    let radius = (self.yard_area(tile) / PI).sqrt();
+                    (1.0 - size.to_mm() / (ARMS_LOST * radius)).max(0.0)
+                }
+                FillKind::Arcs(_) | FillKind::Motif { .. } | FillKind::Solid => 1.0,
             };
             count += 1.0;
         }
