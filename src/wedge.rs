@@ -124,7 +124,8 @@ pub fn wedge(path: &str, loader: &dyn Loader, tone: Option<&str>, config: &Wedge
         Ok(tone) => tone,
         Err(diagnostic) => return Drawn::refuse(diagnostic, lowered.sources),
     };
-    let sheet = Sheet { path, loader, config, tone: &completed(document.as_ref(), &tone), canvas: &canvas };
+    let (imports, completed) = (imports(path, document.as_ref()), completed(document.as_ref(), &tone));
+    let sheet = Sheet { path, loader, config, imports: &imports, tone: &completed, canvas: &canvas };
     // The size of patches follows from the distance of tiles, which only the tone knows.
     let trial = sheet.lower([TRIAL; 2]);
     let Some((paint, trial_canvas)) = first_paint(trial.scene.as_ref()) else { return Drawn::fault(trial) };
@@ -162,10 +163,42 @@ fn document(path: &str, sources: &Sources) -> Option<Document> {
 
 /// Every tone of a document with its parameters.
 fn tones(document: Option<&Document>) -> impl Iterator<Item = (&str, &[Parameter])> {
-    document.into_iter().flat_map(|document| &document.statements).filter_map(|statement| match &statement.kind {
+    statements(document).filter_map(|kind| match kind {
         StatementKind::Tone { name, params, .. } => Some((name.name.as_str(), &params[..])),
         _ => None,
     })
+}
+
+/// Every statement at the top level of a document.
+fn statements(document: Option<&Document>) -> impl Iterator<Item = &StatementKind> {
+    document.into_iter().flat_map(|document| &document.statements).map(|statement| &statement.kind)
+}
+
+/// Statements that import the scene, and what it imports itself under the names that it uses.
+fn imports(path: &str, document: Option<&Document>) -> String {
+    let file = path.rsplit_once('/').map_or(path, |(_, file)| file);
+    let mut text = format!("import {}\n", quoted(file));
+    for kind in statements(document) {
+        if let StatementKind::Import { path, alias } = kind {
+            text += &format!("import {}", quoted(&path.value));
+            text += &alias.as_ref().map_or_else(String::new, |alias| format!(" as {}", alias.name));
+            text.push('\n');
+        }
+    }
+    text
+}
+
+/// A string of the language.
+fn quoted(text: &str) -> String {
+    let mut quoted = String::from("\"");
+    for character in text.chars() {
+        if matches!(character, '\\' | '"' | '{' | '}') {
+            quoted.push('\\');
+        }
+        quoted.push(character);
+    }
+    quoted.push('"');
+    quoted
 }
 
 /// The tone that is meant.
@@ -175,8 +208,9 @@ fn named(document: Option<&Document>, tone: Option<&str>) -> Result<String, Diag
     match (tone, &names[..]) {
         (Some(tone), _) => {
             let name = tone.split('(').next().unwrap_or_default().trim();
-            let is_known = names.contains(&name) || !kake::is_identifier(name);
-            if is_known {
+            // What imports bring is known to lowering alone.
+            let has_imports = statements(document).any(|kind| matches!(kind, StatementKind::Import { .. }));
+            if names.contains(&name) || has_imports || !kake::is_identifier(name) {
                 return Ok(tone.to_owned());
             }
             let message = format!("the scene declares no tone `{name}`");
@@ -186,7 +220,7 @@ fn named(document: Option<&Document>, tone: Option<&str>) -> Result<String, Diag
         }
         (None, [tone]) => Ok((*tone).to_owned()),
         (None, []) => Err(Diagnostic::without_span(Code::UnknownTone, "the scene declares no tone")
-            .hint("a wedge is drawn of a tone that the named file declares itself; imports have wedges of their own")),
+            .hint("a wedge is drawn of a tone that the file declares or imports; one that it imports has to be named")),
         (None, _) => Err(Diagnostic::without_span(Code::Missing, "the scene declares several tones")
             .hint(format!("name one of them: {}", list()))),
     }
@@ -234,6 +268,8 @@ struct Sheet<'a> {
     path: &'a str,
     loader: &'a dyn Loader,
     config: &'a WedgeConfig,
+    /// The statements that import it.
+    imports: &'a str,
     tone: &'a str,
     /// The other scene's canvas, from which all but the size is taken.
     canvas: &'a Canvas,
@@ -256,20 +292,12 @@ impl Sheet<'_> {
     /// Lowers it at a size in millimetres.
     fn lower(&self, [width, height]: [f64; 2]) -> Lowered {
         let (folder, file) = self.path.rsplit_once('/').map_or(("", self.path), |(folder, file)| (folder, file));
-        let mut escaped = String::new();
-        for character in file.chars() {
-            if matches!(character, '\\' | '"' | '{' | '}') {
-                escaped.push('\\');
-            }
-            escaped.push(character);
-        }
         let Canvas { dpi, unit, gain, .. } = self.canvas;
         let (unit, gain) = (unit.to_mm(), gain.to_mm());
         let text = format!(
-            "import \"{escaped}\"\n\
-             canvas {{ size: ({width:.6}mm, {height:.6}mm) dpi: {dpi} unit: {unit}mm gain: {gain}mm }}\n\
+            "{}canvas {{ size: ({width:.6}mm, {height:.6}mm) dpi: {dpi} unit: {unit}mm gain: {gain}mm }}\n\
              paint canvas with {} as \"wedge\"\n",
-            self.tone,
+            self.imports, self.tone,
         );
         // Should there be such a file, it is not the one that is imported.
         let name = format!("wedge of {file}.kake");

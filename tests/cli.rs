@@ -652,6 +652,10 @@ fn wedges_are_drawn_and_printed() {
     assert!(desk.kake(&["wedge", "tones.kake", "coarse", "--steps", "2", "--format", "csv"]).out().starts_with("k,"));
     assert_eq!(desk.kake(&["wedge", "scene.kake", "plain", "--steps", "2", "--set", "pen=0.4mm"]).status(), 0);
 
+    desk.put("page.kake", "import \"tones.kake\" as tones");
+    assert_eq!(desk.kake(&["wedge", "page.kake", "tones.fine(d: 0)", "--steps", "2"]).status(), 0);
+    desk.kake(&["wedge", "page.kake"]).refused(1, "declares no tone");
+
     desk.kake(&["wedge", "tones.kake"]).refused(1, "several tones");
     desk.kake(&["wedge", "tones.kake", "fone"]).refused(1, "did you mean `fine`?");
     desk.kake(&["wedge", "tones.kake", "fine(tile: 3deg)"]).refused(1, "kake::type");
