@@ -6,13 +6,12 @@ use crate::diag::{Code, Diagnostic, did_you_mean};
 use crate::field::{Field, Node};
 use crate::geom::{Angle, Length};
 use crate::scene::{
-    AngleRule, Asked, Blend, Darkness, Domain, Edge, Fill, FillKind, Ground, Link, Over, Placement, Range, Shape,
+    AngleRule, Asked, Blend, Darkness, Domain, Edge, Fill, FillKind, Ground, Hand, Link, Over, Placement, Range, Shape,
     Stack, Tone as SceneTone,
 };
 use crate::span::Span;
 use crate::syntax::ast::{Argument, Expr, ExprKind, Property, ToneBody};
 
-use super::call::not_yet;
 use super::convert::{Slot, coerce};
 use super::cx::Cx;
 use super::modules::Tone;
@@ -41,7 +40,7 @@ struct Given {
 }
 
 /// The properties of tones with what each takes.
-const PROPERTIES: [(&str, Slot); 16] = [
+const PROPERTIES: [(&str, Slot); 17] = [
     ("place", Slot::of(Kind::Placement)),
     ("domain", Slot::words(&["canvas", "region"])),
     ("bleed", Slot::of(Kind::Length)),
@@ -58,14 +57,13 @@ const PROPERTIES: [(&str, Slot); 16] = [
     ("over", Slot::words(&["print", "knockout"])),
     ("ground", Slot::or_words(Kind::Fill, &["nearest"])),
     ("edge", Slot::words(&["clip", "whole", "centre"])),
+    ("hand", Slot::of(Kind::Hand)),
 ];
 
 /// Properties without which nothing can be painted.
 const REQUIRED: [&str; 2] = ["place", "fill"];
 
 /// Properties that a later version draws.
-const LATER: [&str; 1] = ["hand"];
-
 /// Pairs of properties of which a tone has one at most, with what the first is about.
 const RIVALS: [(&str, &str, &str); 4] = [
     (
@@ -245,11 +243,6 @@ impl ToneValue {
         let name = &property.name;
         let Some((known, slot)) = PROPERTIES.iter().find(|(known, _)| *known == name.name) else {
             self.broken = true;
-            if LATER.contains(&name.name.as_str()) {
-                // Its value belongs to the later version as well.
-                cx.report(not_yet(&name.name, name.span));
-                return;
-            }
             eval::eval(cx, scope, &property.value, Slot::of(Kind::Field));
             let names = PROPERTIES.iter().map(|(name, _)| *name);
             let hint = did_you_mean(&name.name, names.clone()).unwrap_or_else(|| {
@@ -414,6 +407,10 @@ impl ToneValue {
             _ => AngleRule::Bfs { candidates: 360 },
         };
         let (asked, asked_span) = self.asked().unwrap_or_else(|| (Asked::K(Field::constant(1.0)), span));
+        let (hand, hand_span) = match self.get("hand") {
+            Some(Given { value: Value::Hand(hand), span, .. }) => (*hand, *span),
+            _ => (Hand::RULED, span),
+        };
         Some(SceneTone {
             place: (**placement).clone(),
             place_span: place.span,
@@ -465,6 +462,8 @@ impl ToneValue {
                 Some("centre") => Edge::Centre,
                 _ => Edge::Clip,
             },
+            hand,
+            hand_span,
         })
     }
 

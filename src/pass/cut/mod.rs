@@ -7,6 +7,7 @@ mod darkness;
 mod layers;
 mod stamp;
 mod standing;
+mod unsteady;
 pub(crate) mod voronoi;
 
 use rayon::prelude::*;
@@ -54,7 +55,8 @@ impl Chunk {
 }
 
 /// Cuts the tiles of a paint. Sites, links and angles belong to the same paint. One warning is added where k
-/// had to be clamped on tiles that are drawn, and one where no tile lies on the region.
+/// had to be clamped on tiles that are drawn, one where no tile lies on the region, and one for each thing that the hand
+/// does too much of.
 pub fn cut(
     paint: &Paint,
     canvas: &Canvas,
@@ -105,6 +107,7 @@ pub fn cut(
             (layers.iter().map(|layers| f64::from(layers.full) + layers.part).collect(), layers)
         }
     };
+    warnings.extend(unsteady::warnings(paint, sites));
     // A region off the canvas was warned of where it was found.
     if !visible.is_empty() && tiles.standing.iter().all(|&standing| standing == Standing::Absent) {
         let message = format!("`{}` has no tile on its region", paint.name);

@@ -189,7 +189,7 @@ impl<'a> Reckoner<'a> {
         let chord = |v: f64| match self.yard {
             Yard::Tile => {
                 let mut length = 0.0;
-                self.seen.spans(v, |(start, end)| length += end - start);
+                self.seen.spans(&v, |(start, end)| length += end - start);
                 length
             }
             Yard::Disc(radius) => 2.0 * (radius * radius - v * v).max(0.0).sqrt(),
