@@ -117,7 +117,7 @@ impl Cutout {
 }
 
 /// Sorts ranges and makes one of those that touch.
-fn unite(ranges: &mut Vec<(f64, f64)>) {
+pub(super) fn unite(ranges: &mut Vec<(f64, f64)>) {
     ranges.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     ranges.dedup_by(|next, last| {
         let touches = next.0 <= last.1 + SEAM;
