@@ -30,6 +30,8 @@ mod scribble;
 pub(in crate::pass) mod silhouette;
 mod solid;
 mod stroke;
+mod taper;
+mod wander;
 mod waves;
 
 #[cfg(test)]
