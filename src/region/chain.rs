@@ -84,9 +84,8 @@ pub fn clipped(chain: &[Point], region: &Region) -> Vec<Vec<Point>> {
 #[must_use]
 pub fn straight(chain: &[Point]) -> Option<Vec<Point>> {
     const NEAR: f64 = 1e-3;
-    let is_straight = |Cubic([a, b, c, d])| {
-        a.lerp(d, 1.0 / 3.0).distance(b) <= NEAR && a.lerp(d, 2.0 / 3.0).distance(c) <= NEAR
-    };
+    let is_straight =
+        |Cubic([a, b, c, d])| a.lerp(d, 1.0 / 3.0).distance(b) <= NEAR && a.lerp(d, 2.0 / 3.0).distance(c) <= NEAR;
     cubics(chain).all(is_straight).then(|| chain.iter().step_by(3).copied().collect())
 }
 
@@ -140,7 +139,9 @@ mod tests {
     fn closed_chains_are_joined_where_they_begin() {
         let disc = Region::circle(Point::new(0.0, 0.0), Length::mm(5.0));
         let mut square = points(&[(0.0, 0.0)]);
-        for (a, b) in [((0.0, 0.0), (9.0, 0.0)), ((9.0, 0.0), (9.0, 9.0)), ((9.0, 9.0), (0.0, 9.0)), ((0.0, 9.0), (0.0, 0.0))] {
+        for (a, b) in
+            [((0.0, 0.0), (9.0, 0.0)), ((9.0, 0.0), (9.0, 9.0)), ((9.0, 9.0), (0.0, 9.0)), ((0.0, 9.0), (0.0, 0.0))]
+        {
             push_line(&mut square, Point::new(a.0, a.1), Point::new(b.0, b.1));
         }
         let cut = clipped(&square, &disc);

@@ -110,7 +110,10 @@ impl fmt::Display for FloodError {
         match self {
             Self::OffPage(page) => {
                 let [x0, y0, x1, y1] = [page.min.x, page.min.y, page.max.x, page.max.y].map(tenth);
-                write!(f, "the flood starts outside the drawing, whose page goes from ({x0}mm, {y0}mm) to ({x1}mm, {y1}mm)")
+                write!(
+                    f,
+                    "the flood starts outside the drawing, whose page goes from ({x0}mm, {y0}mm) to ({x1}mm, {y1}mm)"
+                )
             }
             Self::OnLine => f.write_str("the flood starts on a line"),
             Self::TooLarge { most } => write!(f, "the lines have more than {most} straight pieces"),
@@ -182,12 +185,7 @@ impl Lines {
     }
 
     /// The widest of the gaps that have to be bridged, by halving the list of all that could be.
-    fn leak(
-        &self,
-        network: &Network,
-        walls: &[Vec<Point>],
-        config: &FloodConfig,
-    ) -> Result<Option<Gap>, Tangled> {
+    fn leak(&self, network: &Network, walls: &[Vec<Point>], config: &FloodConfig) -> Result<Option<Gap>, Tangled> {
         let close = config.close.to_mm();
         let all = network.bridges(&self.dark, close, WIDEST.max(close * 2.0));
         let holds = |count: usize| -> Result<bool, Tangled> {

@@ -2,8 +2,8 @@
 
 use crate::diag::{Code, Diagnostic, grouped};
 use crate::drawing::{Drawing, Layer, Page, Strokes};
-use crate::pass::cut;
 use crate::geom::Rect;
+use crate::pass::cut;
 use crate::region::{Operation, Region, chain};
 use crate::scene::{Canvas, Cap, Colour, Draw, Ink, InkMark, InkShape, Limits, Outline, Over, Paint, Scene};
 use crate::span::Span;
@@ -175,8 +175,10 @@ fn put(mark: &InkMark, sheet: Rect, layer: &mut Layer) {
         InkShape::Area(area) => {
             let is_whole = sheet.contains(area.bounds().min) && sheet.contains(area.bounds().max);
             // An area that crosses the border too often to be cut lies beyond it as it is.
-            let cut = if is_whole { None } else { area.try_combined(&Region::rect(sheet), Operation::Intersection).ok() };
-            let rings = |area: &Region| area.polygons().iter().map(|polygon| polygon.rings().cloned().collect()).collect();
+            let cut =
+                if is_whole { None } else { area.try_combined(&Region::rect(sheet), Operation::Intersection).ok() };
+            let rings =
+                |area: &Region| area.polygons().iter().map(|polygon| polygon.rings().cloned().collect()).collect();
             layer.areas = rings(cut.as_ref().unwrap_or(area));
         }
         InkShape::Strokes { pen, cap, chains } => {

@@ -253,7 +253,8 @@ impl Network {
         let pieces = self.pieces_of(end.line);
         let count = pieces.len();
         let start = pieces.partition_point(|piece| piece.from < end.along);
-        let onwards = (0..count).map(|k| start + k).take_while(|&i| own.is_closed || i < count).map(|i| i % count.max(1));
+        let onwards =
+            (0..count).map(|k| start + k).take_while(|&i| own.is_closed || i < count).map(|i| i % count.max(1));
         let back = (1..=count).map(|k| start + count - k);
         let back = back.take_while(|&i| own.is_closed || i >= count).map(|i| i % count.max(1));
         let is_near = |i: &usize| {

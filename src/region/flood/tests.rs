@@ -6,11 +6,7 @@ use super::*;
 fn lines(radius: f64, strokes: &[&[(f64, f64)]]) -> Lines {
     let centres = strokes
         .iter()
-        .map(|stroke| Centre {
-            points: stroke.iter().map(|&(x, y)| Point::new(x, y)).collect(),
-            radius,
-            beyond: 0.0,
-        })
+        .map(|stroke| Centre { points: stroke.iter().map(|&(x, y)| Point::new(x, y)).collect(), radius, beyond: 0.0 })
         .collect();
     Lines { page: Rect::new(Point::new(0.0, 0.0), Point::new(40.0, 40.0)), centres, dark: Region::empty() }
 }
@@ -40,7 +36,9 @@ fn a_flood_ends_at_the_centres_of_lines() {
 
 #[test]
 fn gaps_are_bridged_up_to_close() {
-    for (gap, close, holds) in [(0.4, 0.5, true), (0.5, 0.5, true), (0.51, 0.5, false), (3.0, 3.0, true), (0.4, 0.0, false)] {
+    for (gap, close, holds) in
+        [(0.4, 0.5, true), (0.5, 0.5, true), (0.51, 0.5, false), (3.0, 3.0, true), (0.4, 0.0, false)]
+    {
         let found = flood(&lines(0.0, &[&square(gap)]), (20.0, 20.0), close, Border::Open);
         match found {
             Ok(region) => {
@@ -126,12 +124,8 @@ fn lines_that_end_inside_leave_no_slit() {
 #[test]
 fn lines_that_meet_part_the_page() {
     // Four T junctions: two lines that stop at a third, one that stops 0.2 mm short and one that runs over.
-    let tees: [&[(f64, f64)]; 4] = [
-        &CLOSED,
-        &[(10.0, 20.0), (30.0, 20.0)],
-        &[(20.0, 10.0), (20.0, 19.8)],
-        &[(15.0, 9.7), (15.0, 20.3)],
-    ];
+    let tees: [&[(f64, f64)]; 4] =
+        [&CLOSED, &[(10.0, 20.0), (30.0, 20.0)], &[(20.0, 10.0), (20.0, 19.8)], &[(15.0, 9.7), (15.0, 20.3)]];
     let drawing = lines(0.0, &tees);
     is(flood(&drawing, (12.0, 12.0), 0.5, Border::Open).unwrap().area(), 50.0);
     is(flood(&drawing, (18.0, 12.0), 0.5, Border::Open).unwrap().area(), 50.0);
@@ -147,13 +141,13 @@ fn dark_shapes_hold_a_flood_that_reaches_under_them() {
     let shape = |corners: &[(f64, f64)]| {
         Region::polygon(&corners.iter().map(|&(x, y)| Point::new(x, y)).collect::<Vec<_>>()).unwrap()
     };
-    let bar = shape(&[(9.0, 15.0), (31.0, 15.0), (31.0, 18.0), (9.0, 18.0)]);
+    let bar = shape(&[(10.0, 15.0), (30.0, 15.0), (30.0, 18.0), (10.0, 18.0)]);
     let sliver = shape(&[(9.9, 24.9), (20.0, 24.8), (29.7, 25.0), (20.0, 25.0)]);
     drawing.dark = bar.union(&sliver);
     is(flood(&drawing, (20.0, 12.0), 0.0, Border::Open).unwrap().area(), 20.0 * 5.25);
     // The sliver is thinner than the reach under it, so that it is covered; its tip leaks, or is bridged.
     let leaking = flood(&drawing, (20.0, 20.0), 0.1, Border::Open).unwrap();
-    is(leaking.area(), 20.0 * 12.25);
+    assert!((leaking.area() - 20.0 * 12.25).abs() < 0.1, "{}", leaking.area());
     let held = flood(&drawing, (20.0, 20.0), 0.3, Border::Open).unwrap();
     assert!((held.area() - 20.0 * 7.25).abs() < 1.5, "{}", held.area());
     assert_eq!(flood(&drawing, (20.0, 16.0), 0.1, Border::Open).unwrap_err(), FloodError::OnLine);

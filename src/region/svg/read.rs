@@ -7,7 +7,8 @@ use std::rc::Rc;
 
 use usvg::tiny_skia_path::{Path, PathSegment, Point as SkPoint, StrokeDash, Transform};
 use usvg::{
-    BlendMode, ClipPath, Group, ImageHrefResolver, LineCap, Node, Opacity, Options, Paint, PaintOrder, Stop, Stroke, Tree,
+    BlendMode, ClipPath, Group, ImageHrefResolver, LineCap, Node, Opacity, Options, Paint, PaintOrder, Stop, Stroke,
+    Tree,
 };
 
 use super::document::{self, Elements, Names};
