@@ -31,8 +31,8 @@ const TABLES: [(Option<Kind>, &[Signature]); 9] = [
     (Some(Kind::Angles), placements::ANGLES),
     (Some(Kind::Shape), shapes::SIGNATURES),
     (Some(Kind::Fill), fills::SIGNATURES),
-    (Some(Kind::Drawing), regions::DRAWINGS),
     (Some(Kind::Hand), hands::SIGNATURES),
+    (Some(Kind::Drawing), regions::DRAWINGS),
     (None, mathematics::SIGNATURES),
 ];
 

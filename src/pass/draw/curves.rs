@@ -191,19 +191,17 @@ pub(super) fn stroke(
     boxes.extend(cubics(chain).map(Cubic::bounds));
     ranges.reset(0.0, boxes.len() as f64);
     area.cut_within(chain, boxes, ranges.as_slice(), found);
-    match layer.partner {
-        // Where the ground goes on with it, a stroke ends where the farther one of the tile and its cell does.
-        Some(_) => {
-            wholes.clone_from(found);
-            partner.cut_within(chain, boxes, ranges.as_slice(), found);
-            wholes.append(found);
-            unite(wholes);
-            area.cut_within(chain, boxes, ranges.as_slice(), found);
-        }
-        None => {
-            overshoot(chain, pull.over, found);
-            wholes.clone_from(found);
-        }
+    wholes.clear();
+    // Where the ground goes on with it, a stroke ends where the farther one of the tile and its cell does.
+    if layer.partner.is_some() {
+        wholes.append(found);
+        partner.cut_within(chain, boxes, ranges.as_slice(), found);
+        wholes.append(found);
+        unite(wholes);
+        area.cut_within(chain, boxes, ranges.as_slice(), found);
+    } else {
+        overshoot(chain, pull.over, found);
+        wholes.extend_from_slice(found);
     }
     ranges.intersect(found);
     for cover in &mut hidden[..covers] {
