@@ -4,6 +4,8 @@
 //! is left out under the tiles. `nearest` continues the pattern of every tile over its Voronoi cell, or of a tiling over
 //! the cell that the tile was drawn in from. Both end at the region's outline whatever the tiles do there.
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 
 use crate::geom::bezier::cubics;
@@ -12,7 +14,7 @@ use crate::geom::{Angle, Length, Point, Vec2, chain, ring_bounds};
 use crate::pass::cut::voronoi::Cells;
 use crate::pass::link;
 use crate::region::{FillRule, Region};
-use crate::scene::{Canvas, Fill, FillKind, Ground, Hatch, Link, Shape};
+use crate::scene::{Canvas, Fill, FillKind, Ground, Hatch, Shape};
 
 use super::arcs::Arcs;
 use super::budget::{BANK, DOT, Exceeded, LINE, PROFILE};
@@ -53,12 +55,11 @@ fn nearest(job: &Job<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
         | Shape::Stamp { .. }
         | Shape::Voronoi { .. } => None,
     };
-    // Cells that share edges are not all the neighbours that bound a Voronoi cell.
-    let delaunay = match job.paint.tone.link {
-        Link::Delaunay => None,
-        Link::Edges => tiling.is_none().then(|| link::link(job.sites, Link::Delaunay)),
+    let links = match tiling {
+        Some(_) => Cow::Borrowed(job.graph),
+        None => link::delaunay_links(job.sites, job.graph, job.paint.tone.link),
     };
-    let cells = Cells::new(job.sites, delaunay.as_ref().unwrap_or(job.graph), Length::ZERO, Length::ZERO);
+    let cells = Cells::new(job.sites, &links, Length::ZERO, Length::ZERO);
     let pens = job.paint.tone.fill.iter().filter_map(|fill| fill.kind.hatch());
     let margin = pens.map(|hatch| hatch.pen.to_mm() / 2.0).fold(0.0, f64::max);
     job.in_chunks(|scratch, tile, out| {
