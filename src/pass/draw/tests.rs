@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod curves;
+mod hand;
 mod laws;
 
 use super::*;

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use super::*;
 
 /// A hatched paint: what it is placed and cut by.
-fn hatched() -> impl Strategy<Value = (Canvas, Paint)> {
+pub(super) fn hatched() -> impl Strategy<Value = (Canvas, Paint)> {
     let shapes = prop_oneof![
         Just(rect_shape(None, None)),
         Just(rect_shape(Some(1.9), Some(1.3))),
