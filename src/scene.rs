@@ -4,6 +4,10 @@
 //! evaluated, and every number lies in its range. Spans are kept only to say where a limit was met. A new placement,
 //! shape, angle rule or fill is one more line in its enum and one file in its pass.
 
+mod hand;
+
+pub use hand::Hand;
+
 use std::sync::Arc;
 
 use serde::{Serialize, Serializer};
@@ -309,6 +313,12 @@ pub struct Tone {
     pub ground: Option<Ground>,
     /// What happens at the region's outline.
     pub edge: Edge,
+    /// How unevenly strokes are drawn.
+    #[serde(skip_serializing_if = "Hand::is_ruled")]
+    pub hand: Hand,
+    /// Where `hand` stands, for warnings.
+    #[serde(skip)]
+    pub hand_span: Span,
 }
 
 /// How sites are found.

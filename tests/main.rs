@@ -9,5 +9,6 @@ mod codes;
 mod determinism;
 mod documents;
 mod examples;
+mod gallery;
 mod later;
 mod support;

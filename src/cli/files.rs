@@ -48,6 +48,10 @@ impl Loader for FsLoader {
         }
         Ok(fs::read(&full).map_err(unreadable)?.into())
     }
+
+    fn library(&self, name: &str) -> Option<Arc<[u8]>> {
+        self.held.get(name).cloned()
+    }
 }
 
 /// A scene that a command was given.

@@ -3,8 +3,8 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
-use crate::diag::{Code, Diagnostic, did_you_mean};
-use crate::field::{Channel, Image, ImageError};
+use crate::diag::{Code, Diagnostic, did_you_mean, grouped};
+use crate::field::{Channel, Field, Image, ImageError};
 use crate::geom::{Length, Rect};
 use crate::loader;
 use crate::region::Region;
@@ -15,6 +15,12 @@ use crate::scene::{Cap, Colour, InkMark, InkShape};
 use super::call::Call;
 use super::modules::{self, ROOT_HINT};
 use super::value::Value;
+
+/// Standard deviations below so many samples change nothing that is seen.
+const LEAST_BLUR: f64 = 0.1;
+
+/// What the blurring of an image counts at least, in pixels: the smallest ones take memory too.
+const LEAST_CHARGE: u64 = 10_000;
 
 /// What helps where outlines cross too often.
 pub(super) const SIMPLIFY: &str = "simplify the outline, or split it into parts";
@@ -81,6 +87,45 @@ pub(super) fn image(call: &mut Call<'_, '_, '_>, channel: &'static str) -> Optio
     };
     call.cx.images.insert(key, image.clone());
     image
+}
+
+/// An image blurred by a Gaussian of a standard deviation on the page, where it fills `place`; `argument` is what asks
+/// for it.
+pub(super) fn blurred(
+    call: &mut Call<'_, '_, '_>,
+    argument: &str,
+    image: &Arc<Image>,
+    place: &Rect,
+    deviation: Length,
+) -> Option<Arc<Image>> {
+    let samples = deviation.to_mm() / place.width() * f64::from(image.width);
+    if samples < LEAST_BLUR {
+        return Some(Arc::clone(image));
+    }
+    // Two images at one address are one image: those that are known are kept.
+    let key = (Arc::as_ptr(image).addr(), samples.to_bits());
+    if let Some((_, known)) = call.cx.blurred.get(&key) {
+        return Some(Arc::clone(known));
+    }
+    let most = call.cx.config.limits.megapixels.saturating_mul(1_000_000);
+    let pixels = (u64::from(image.width) * u64::from(image.height)).max(LEAST_CHARGE);
+    let all = call.cx.blurred_pixels.saturating_add(pixels);
+    if all > most {
+        let needed = all.div_ceil(1_000_000);
+        let message = format!("images of more than {} pixels in all would be blurred", grouped(most));
+        let hint = format!("`--limit megapixels={needed}` lifts the limit, or make the pictures smaller");
+        call.cx.report_value(Diagnostic::error(Code::Limit, call.span_of(argument), message).hint(hint));
+        return None;
+    }
+    call.cx.blurred_pixels = all;
+    let result = Arc::new(image.blurred(samples));
+    call.cx.blurred.insert(key, (Arc::clone(image), Arc::clone(&result)));
+    Some(result)
+}
+
+/// A field whose images are blurred by a Gaussian of a standard deviation on the page.
+pub(super) fn smoothed(call: &mut Call<'_, '_, '_>, argument: &str, of: &Field, deviation: Length) -> Option<Field> {
+    of.with_images(&mut |image, place| blurred(call, argument, image, place, deviation))
 }
 
 /// Reads the SVG file that the argument `file` names, once.

@@ -270,9 +270,18 @@ impl Region {
     #[must_use]
     pub fn signed_distance(&self, p: Point) -> f64 {
         let segments = self.index().segments();
-        let nearest = self.0.nearest.get_or_init(|| Nearest::new(segments));
-        let distance = nearest.distance_squared(segments, p).sqrt();
+        let distance = self.nearest().distance_squared(segments, p).sqrt();
         if self.contains(p) { distance } else { -distance }
+    }
+
+    /// The direction of the outline where it is nearest to a point, in [0, pi); 0 for the empty region.
+    #[must_use]
+    pub fn tangent(&self, p: Point) -> Angle {
+        self.nearest().tangent(self.index().segments(), p).unwrap_or(Angle::ZERO)
+    }
+
+    fn nearest(&self) -> &Nearest {
+        self.0.nearest.get_or_init(|| Nearest::new(self.index().segments()))
     }
 
     fn index(&self) -> &Index {

@@ -16,6 +16,7 @@ mod dots;
 mod edge;
 mod forecast;
 mod ground;
+mod hand;
 mod job;
 mod knockout;
 mod lattice;
@@ -24,9 +25,11 @@ mod motif;
 mod nawaami;
 mod nearby;
 mod palette;
+mod run;
 mod scribble;
 mod silhouette;
 mod solid;
+mod stroke;
 mod waves;
 
 #[cfg(test)]
@@ -38,11 +41,13 @@ pub use nawaami::tangents;
 use crate::diag::Diagnostic;
 use crate::drawing::Layer;
 use crate::pass::cut::visible;
-use crate::scene::{Canvas, Limits, Paint};
+use crate::pass::link;
+use crate::scene::{Canvas, Ground, Limits, Link, Paint};
 use crate::stage::{Angles, Graph, Sites, Tiles};
 
 use budget::{Budget, Exceeded};
 use edge::Bank;
+use ground::Around;
 use job::Job;
 use nearby::Nearby;
 use palette::{Batch, Palette};
@@ -75,8 +80,24 @@ pub fn draw(
     let &Stages { sites, graph, angles, tiles } = stages;
     let (bank, nearby) = (Bank::new(&visible), Nearby::new(sites, tiles));
     let (palette, budget) = (Palette::new(paint, setting.ink), Budget::new(limits));
-    let job =
-        Job { paint, sites, graph, angles, tiles, bank: &bank, nearby: &nearby, palette: &palette, budget: &budget };
+    let is_continued = paint.tone.ground == Some(Ground::Nearest);
+    // Cells that share edges are not all the neighbours that bound a Voronoi cell.
+    let delaunay = match paint.tone.link {
+        Link::Delaunay => None,
+        Link::Edges => is_continued.then(|| link::link(sites, Link::Delaunay)),
+    };
+    let around = is_continued.then(|| Around::new(paint, sites, delaunay.as_ref().unwrap_or(graph)));
+    let job = Job {
+        paint,
+        sites,
+        angles,
+        tiles,
+        bank: &bank,
+        nearby: &nearby,
+        palette: &palette,
+        budget: &budget,
+        around: around.as_ref(),
+    };
     let chunks = chunks(&job, canvas).map_err(|exceeded| match exceeded {
         Exceeded::Overlap { .. } => exceeded.diagnostic(limits, paint.tone.place_span).note(paint.span, "painted here"),
         _ => exceeded.diagnostic(limits, paint.span),
