@@ -241,7 +241,7 @@ fn overshoot(chain: &[Point], over: (f64, f64), ranges: &mut Vec<(f64, f64)>) {
 
 /// Keeps the parts of the stroke where the field has this layer, if layers end along the field.
 fn contour(job: &Job<'_>, layer: &Layer<'_>, pitch: Length, scratch: &mut JobScratch) -> Result<(), Exceeded> {
-    let field = &job.paint.tone.k;
+    let field = job.paint.tone.asked.field();
     if job.paint.tone.blend != Blend::Contour || matches!(field.node(), Node::Constant(_)) {
         return Ok(());
     }

@@ -195,7 +195,7 @@ fn contour(
     pitch: Length,
     scratch: &mut Scratch,
 ) -> Result<(), Exceeded> {
-    let field = &job.paint.tone.k;
+    let field = job.paint.tone.asked.field();
     if job.paint.tone.blend != Blend::Contour || matches!(field.node(), Node::Constant(_)) {
         return Ok(());
     }
