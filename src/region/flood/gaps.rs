@@ -81,14 +81,8 @@ pub(super) struct Network {
 impl Network {
     pub(super) fn new(lines: &Lines, border: Border) -> Self {
         let tree = Nearest::new(&[]);
-        let mut network = Self {
-            pieces: Vec::new(),
-            strokes: 0,
-            lines: Vec::new(),
-            ends: Vec::new(),
-            tree,
-            widest: 0.0,
-        };
+        let mut network =
+            Self { pieces: Vec::new(), strokes: 0, lines: Vec::new(), ends: Vec::new(), tree, widest: 0.0 };
         for centre in &lines.centres {
             let line = network.add(&centre.points, centre.radius);
             let (Some(added), Some(&first), Some(&last)) =
