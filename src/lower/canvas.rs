@@ -36,8 +36,8 @@ const SHEETS: [(&str, f64, f64); 14] = [
 const SHEET_NAMES: &[&str] =
     &["a0", "a1", "a2", "a3", "a4", "a5", "a6", "b4", "b5", "jis_b4", "jis_b5", "legal", "letter", "tabloid"];
 
-const PROPERTIES: [&str; 8] = ["size", "bleed", "dpi", "pixels", "paper", "ink", "depth", "unit"];
-const LATER: [&str; 2] = ["gain", "repeat"];
+const PROPERTIES: [&str; 9] = ["size", "bleed", "dpi", "pixels", "paper", "ink", "depth", "unit", "gain"];
+const LATER: [&str; 1] = ["repeat"];
 
 /// Pixels per inch where neither `dpi` nor `pixels` says otherwise: the least that print shops take for line art.
 const DEFAULT_DPI: f64 = 600.0;
@@ -61,6 +61,7 @@ pub(super) fn default() -> Canvas {
         ink: Colour::BLACK,
         depth: Depth::Eight,
         unit: Length::mm(1.0),
+        gain: Length::ZERO,
     }
 }
 
@@ -99,6 +100,7 @@ pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Option<Canvas> {
     let paper = reader.colour(find("paper"), &["none"], Some(Colour::WHITE));
     let ink = reader.colour(find("ink"), &[], Some(Colour::BLACK));
     let depth = reader.depth(find("depth"));
+    let gain = reader.gain(find("gain"));
     // A property that is not known may have been meant for it.
     let is_known = |property: &&Property| PROPERTIES.contains(&property.name.name.as_str());
     if find("size").is_none() && given.iter().all(is_known) {
@@ -118,8 +120,8 @@ pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Option<Canvas> {
     let grown = bleed.unwrap_or(Length::ZERO).to_mm();
     let bounds = Rect::new(Point::default(), Point::new(width.to_mm(), height.to_mm())).grown(grown);
     cx.page = Some(Region::rect(bounds));
-    let (paper, ink, depth, unit) = (paper?, ink??, depth?, Length::mm(unit?));
-    Some(Canvas { width, height, bleed: bleed?, pixels, dpi, paper, ink, depth, unit })
+    let (paper, ink, depth, unit, gain) = (paper?, ink??, depth?, Length::mm(unit?), gain?);
+    Some(Canvas { width, height, bleed: bleed?, pixels, dpi, paper, ink, depth, unit, gain })
 }
 
 fn check_property(cx: &mut Cx<'_, '_>, property: &Property, earlier: &[&Property]) {
@@ -188,6 +190,17 @@ impl<'a> Reader<'_, 'a, '_> {
             return Some(mm);
         }
         self.refuse(property.value.span, format!("`{}` must be greater than zero", property.name.name))
+    }
+
+    /// How far ink spreads. Tones whose pens are no wider are refused where they are painted.
+    fn gain(&mut self, property: Option<&'a Property>) -> Option<Length> {
+        let Some(property) = property else { return Some(Length::ZERO) };
+        let mm = eval::expect(self.cx, self.scope, &property.value, Slot::of(Kind::Length)).as_length()?;
+        if !(0.0..=LARGEST).contains(&mm) {
+            return self.refuse(property.value.span, "`gain` must not be negative");
+        }
+        self.cx.gain = Some((Length::mm(mm), property.value.span));
+        Some(Length::mm(mm))
     }
 
     /// How far the picture goes on beyond the page.

@@ -38,6 +38,8 @@ pub(super) struct Cx<'a, 'c> {
     pub(super) dpi: Option<f64>,
     /// The page, once it is known.
     pub(super) page: Option<Region>,
+    /// How far ink spreads, and where that is said.
+    pub(super) gain: Option<(Length, Span)>,
     /// Values that were set, by module and name.
     pub(super) set: BTreeMap<(usize, String), &'a params::Set>,
     /// Parameters that have their values, by module and name.
@@ -86,6 +88,7 @@ impl<'a, 'c> Cx<'a, 'c> {
             unit: 1.0,
             dpi: None,
             page: None,
+            gain: None,
             set: BTreeMap::new(),
             settled: BTreeMap::new(),
             choices: BTreeMap::new(),

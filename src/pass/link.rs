@@ -2,6 +2,8 @@
 //!
 //! In: the sites. Out: a [`Graph`] over them. Every site has its place in the graph, with no links where it has none.
 
+use std::borrow::Cow;
+
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 use crate::geom::{Point, Rect, Vec2};
@@ -14,6 +16,14 @@ pub fn link(sites: &Sites, link: Link) -> Graph {
     match link {
         Link::Delaunay => delaunay(&sites.points),
         Link::Edges => shared_edges(sites),
+    }
+}
+
+/// The Delaunay links of sites that `graph` links by another rule: those bound Voronoi cells, whatever makes neighbours.
+pub(super) fn delaunay_links<'a>(sites: &Sites, graph: &'a Graph, rule: Link) -> Cow<'a, Graph> {
+    match rule {
+        Link::Delaunay => Cow::Borrowed(graph),
+        Link::Edges => Cow::Owned(link(sites, Link::Delaunay)),
     }
 }
 

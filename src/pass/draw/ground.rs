@@ -21,7 +21,7 @@ use super::curves::{Course, clip, disc, emit, trace};
 use super::dashes::Dashes;
 use super::dots::{Dot, Dotting, end_row};
 use super::edge::Contact;
-use super::hand::{Bundle, Line, Pull, Wander};
+use super::hand::{Bundle, Pull};
 use super::job::{Job, Piece, Scratch};
 use super::lattice::Lattice;
 use super::motif::Motif;
@@ -29,6 +29,7 @@ use super::palette::Batch;
 use super::scribble::Scribble;
 use super::solid;
 use super::stroke::Stroke;
+use super::wander::{Line, Wander};
 use super::waves::Waves;
 
 /// Lines that one thread draws at a time; they also make a bundle.

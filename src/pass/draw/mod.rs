@@ -17,9 +17,9 @@ mod edge;
 mod forecast;
 mod ground;
 mod hand;
-mod job;
+pub(in crate::pass) mod job;
 mod knockout;
-mod lattice;
+pub(in crate::pass) mod lattice;
 mod lines;
 mod motif;
 mod nawaami;
@@ -27,9 +27,11 @@ mod nearby;
 mod palette;
 mod run;
 mod scribble;
-mod silhouette;
+pub(in crate::pass) mod silhouette;
 mod solid;
 mod stroke;
+mod taper;
+mod wander;
 mod waves;
 
 #[cfg(test)]
