@@ -7,7 +7,7 @@
 use serde::{Serialize, Serializer};
 
 use crate::field::Field;
-use crate::geom::{Angle, Length, Point, Rect};
+use crate::geom::{Angle, Length, Period, Point, Rect};
 use crate::region::Region;
 use crate::span::Span;
 
@@ -45,13 +45,44 @@ pub struct Canvas {
     pub depth: Depth,
     /// The length of one canvas unit.
     pub unit: Length,
+    /// Whether it goes on beyond its borders.
+    #[serde(skip_serializing_if = "Repeat::is_off")]
+    pub repeat: Repeat,
 }
 
 impl Canvas {
+    /// After which width and height it repeats, if it does.
+    #[must_use]
+    pub fn period(&self) -> Option<Period> {
+        match self.repeat {
+            Repeat::Off => None,
+            Repeat::Both => Some(Period::new(self.width, self.height)),
+        }
+    }
+
     /// The page's area.
     #[must_use]
     pub fn bounds(&self) -> Rect {
         Rect::new(Point::default(), Point::new(self.width.to_mm(), self.height.to_mm()))
+    }
+}
+
+/// Whether a canvas goes on beyond its borders.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Repeat {
+    /// It ends there.
+    #[default]
+    Off,
+    /// The left border continues on the right and the upper one below: the page is a torus.
+    Both,
+}
+
+impl Repeat {
+    /// Whether it ends at its borders.
+    #[must_use]
+    pub fn is_off(&self) -> bool {
+        *self == Self::Off
     }
 }
 

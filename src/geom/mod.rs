@@ -6,10 +6,12 @@
 mod angle;
 pub mod clip;
 mod length;
+mod period;
 mod point;
 mod polygon;
 
 pub use angle::Angle;
 pub use length::Length;
+pub use period::{Period, whole_steps};
 pub use point::{Point, Rect, Vec2};
 pub use polygon::{Polygon, ring_area, ring_bounds, ring_contains};

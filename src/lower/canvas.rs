@@ -3,9 +3,9 @@
 use std::rc::Rc;
 
 use crate::diag::{Code, Diagnostic, did_you_mean};
-use crate::geom::{Length, Point, Rect};
+use crate::geom::{Length, Period, Point, Rect};
 use crate::region::Region;
-use crate::scene::{Canvas, Colour, Depth};
+use crate::scene::{Canvas, Colour, Depth, Repeat};
 use crate::span::Span;
 use crate::syntax::ast::{Expr, Property, StatementKind};
 
@@ -36,8 +36,8 @@ const SHEETS: [(&str, f64, f64); 14] = [
 const SHEET_NAMES: &[&str] =
     &["a0", "a1", "a2", "a3", "a4", "a5", "a6", "b4", "b5", "jis_b4", "jis_b5", "legal", "letter", "tabloid"];
 
-const PROPERTIES: [&str; 7] = ["size", "dpi", "pixels", "paper", "ink", "depth", "unit"];
-const LATER: [&str; 3] = ["bleed", "gain", "repeat"];
+const PROPERTIES: [&str; 8] = ["size", "dpi", "pixels", "paper", "ink", "depth", "unit", "repeat"];
+const LATER: [&str; 2] = ["bleed", "gain"];
 
 /// Pixels per inch where neither `dpi` nor `pixels` says otherwise: the least that print shops take for line art.
 const DEFAULT_DPI: f64 = 600.0;
@@ -60,6 +60,7 @@ pub(super) fn default() -> Canvas {
         ink: Colour::BLACK,
         depth: Depth::Eight,
         unit: Length::mm(1.0),
+        repeat: Repeat::Off,
     }
 }
 
@@ -97,6 +98,7 @@ pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Option<Canvas> {
     let paper = reader.colour(find("paper"), &["none"], Some(Colour::WHITE));
     let ink = reader.colour(find("ink"), &[], Some(Colour::BLACK));
     let depth = reader.depth(find("depth"));
+    let repeat = reader.repeat(find("repeat"));
     // A property that is not known may have been meant for it.
     let is_known = |property: &&Property| PROPERTIES.contains(&property.name.name.as_str());
     if find("size").is_none() && given.iter().all(is_known) {
@@ -114,7 +116,13 @@ pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Option<Canvas> {
     cx.dpi = Some(dpi);
     let bounds = Rect::new(Point::default(), Point::new(width.to_mm(), height.to_mm()));
     cx.page = Some(Region::rect(bounds));
-    Some(Canvas { width, height, pixels, dpi, paper: paper?, ink: ink??, depth: depth?, unit: Length::mm(unit?) })
+    let repeat = repeat?;
+    cx.period = match repeat {
+        Repeat::Off => None,
+        Repeat::Both => Some(Period::new(width, height)),
+    };
+    let unit = Length::mm(unit?);
+    Some(Canvas { width, height, pixels, dpi, paper: paper?, ink: ink??, depth: depth?, unit, repeat })
 }
 
 fn check_property(cx: &mut Cx<'_, '_>, property: &Property, earlier: &[&Property]) {
@@ -259,6 +267,15 @@ impl<'a> Reader<'_, 'a, '_> {
             Value::Number(8.0) => Some(Depth::Eight),
             Value::Number(1.0) => Some(Depth::One),
             Value::Number(_) => self.refuse(property.value.span, "`depth` is 8 (grey) or 1 (ink or paper)"),
+            _ => None,
+        }
+    }
+
+    fn repeat(&mut self, property: Option<&'a Property>) -> Option<Repeat> {
+        let Some(property) = property else { return Some(Repeat::Off) };
+        match eval::expect(self.cx, self.scope, &property.value, Slot::of(Kind::Bool)) {
+            Value::Bool(true) => Some(Repeat::Both),
+            Value::Bool(false) => Some(Repeat::Off),
             _ => None,
         }
     }

@@ -8,6 +8,7 @@ use crate::span::Span;
 
 use super::budget::{Budget, Exceeded};
 use super::knockout::Stencil;
+use super::torus::{self, Unrolled};
 use super::{Stages, draw};
 
 /// Something that is drawn.
@@ -92,7 +93,10 @@ impl<'a> Assembly<'a> {
             Over::Print => {}
             Over::Knockout => {
                 let visible = cut::visible(paint, self.canvas);
-                let stencil = Stencil::new(paint, &visible, stages.sites, stages.tiles);
+                let reach = self.canvas.period().map(|period| torus::protrusion(&self.layers, period));
+                let unrolled = reach.and_then(|reach| Unrolled::new(stages, reach));
+                let Stages { sites, tiles, .. } = unrolled.as_ref().map_or(*stages, Unrolled::stages);
+                let stencil = Stencil::new(paint, &visible, sites, tiles);
                 Budget::new(self.limits)
                     .work(stencil.cost(&self.layers))
                     .map_err(|exceeded| exceeded.diagnostic(self.limits, paint.span))?;
@@ -116,6 +120,10 @@ impl<'a> Assembly<'a> {
         let polylines = rings.map(|ring| ring.iter().chain(ring.first()).copied().collect()).collect();
         let mut layer = Layer::new(setting.groups.clone(), "outline".to_owned(), setting.ink);
         layer.strokes.push(Strokes { polylines, ..Strokes::new(outline.pen, Cap::Butt) });
+        if let Some(period) = self.canvas.period() {
+            layer = torus::wrap(layer, period, self.limits.strokes)
+                .map_err(|exceeded| exceeded.diagnostic(self.limits, outline.span))?;
+        }
         self.add(vec![layer], outline.span)
     }
 

@@ -2,17 +2,26 @@
 
 use crate::geom::Length;
 
+use super::weave::Along;
+
 /// A pattern of dashes. Seen from the site they are set like bricks: on even lines the middle of a dash, on odd lines the
 /// middle of a gap lies beside it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Dashes {
     dash: f64,
     period: f64,
+    /// By how much they lie further back on a line a millimetre across.
+    drift: f64,
 }
 
 impl Dashes {
     pub(super) fn new(dash: Length, gap: Length) -> Self {
-        Self { dash: dash.to_mm(), period: (dash + gap).to_mm() }
+        Self { dash: dash.to_mm(), period: (dash + gap).to_mm(), drift: 0.0 }
+    }
+
+    /// The same dashes, with other gaps.
+    pub(super) fn woven(self, along: Along) -> Self {
+        Self { period: along.step, drift: along.drift, ..self }
     }
 
     /// The length of a dash in millimetres.
@@ -25,9 +34,9 @@ impl Dashes {
         ((end - start + self.dash) / self.period).ceil() + 1.0
     }
 
-    /// Appends the dashes of line `number` that reach into a range, in order.
-    pub(super) fn cut(&self, (start, end): (f64, f64), number: i64, out: &mut Vec<(f64, f64)>) {
-        let middle = if number.rem_euclid(2) == 0 { 0.0 } else { self.period / 2.0 };
+    /// Appends the dashes of line `number`, which lies at `v`, that reach into a range, in order.
+    pub(super) fn cut(&self, (start, end): (f64, f64), (number, v): (i64, f64), out: &mut Vec<(f64, f64)>) {
+        let middle = if number.rem_euclid(2) == 0 { 0.0 } else { self.period / 2.0 } - v * self.drift;
         let first = ((start - middle - self.dash / 2.0) / self.period).ceil();
         for i in 0..=self.count((start, end)) as u64 {
             let dash = middle + (first + i as f64) * self.period - self.dash / 2.0;
@@ -51,7 +60,7 @@ mod tests {
         let dashes = Dashes::new(Length::mm(2.0), Length::mm(1.0));
         let cut = |number| {
             let mut out = Vec::new();
-            dashes.cut((-1.5, 3.0), number, &mut out);
+            dashes.cut((-1.5, 3.0), (number, 0.0), &mut out);
             out
         };
         assert_eq!(cut(0), [(-1.0, 1.0), (2.0, 4.0)]);
@@ -63,8 +72,8 @@ mod tests {
     fn a_dash_over_two_ranges_is_one() {
         let dashes = Dashes::new(Length::mm(2.0), Length::mm(1.0));
         let mut out = Vec::new();
-        dashes.cut((-0.5, 0.0), 0, &mut out);
-        dashes.cut((0.5, 0.7), 0, &mut out);
+        dashes.cut((-0.5, 0.0), (0, 0.0), &mut out);
+        dashes.cut((0.5, 0.7), (0, 0.0), &mut out);
         assert_eq!(out, [(-1.0, 1.0)]);
     }
 }

@@ -22,9 +22,9 @@ impl<'a> Dotting<'a> {
         Self { hatch, spacing: spacing.to_mm(), radius: radius.to_mm() }
     }
 
-    /// Places along lines at the exact spacing.
-    pub(super) fn along(&self, range: (f64, f64)) -> Lattice {
-        Lattice::cell(range, 0.0, self.spacing)
+    /// Places along lines at the exact spacing, one of them, or one that would continue them, at `middle`.
+    pub(super) fn along(&self, range: (f64, f64), middle: f64) -> Lattice {
+        Lattice::cell(range, middle, self.spacing)
     }
 }
 
@@ -78,7 +78,7 @@ fn lattices(job: &Job<'_>, layer: &Layer<'_>, dotting: &Dotting<'_>, scratch: &m
     let lines = spread(job, layer, dotting.hatch, scratch);
     let along = scratch.whole.along();
     let row = if job.paint.tone.shape.is_cell() {
-        dotting.along(along)
+        dotting.along(along, 0.0)
     } else {
         Lattice::stamp(along, dotting.spacing, 0.5, 1)
     };

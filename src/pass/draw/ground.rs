@@ -1,13 +1,14 @@
 //! What is drawn where no tile is, before the tiles.
 //!
 //! A fill of its own runs over the whole region, its lines at the exact pitch and measured from the middle of the page, and
-//! is left out under the tiles. `nearest` continues the pattern of every tile over its Voronoi cell. Both end at the
+//! is left out under the tiles. Where the page repeats, lines take the direction and the pitch next to these that go round,
+//! and run on a little beyond the borders. `nearest` continues the pattern of every tile over its Voronoi cell. Both end at the
 //! region's outline whatever the tiles do there.
 
 use rayon::prelude::*;
 
 use crate::geom::clip::{Frame, Profile, convex_clearance};
-use crate::geom::{Angle, Length, Point, ring_bounds};
+use crate::geom::{Angle, Length, Point, Vec2, ring_bounds};
 use crate::pass::cut::voronoi::Cells;
 use crate::region::{FillRule, Region};
 use crate::scene::{Canvas, Fill, FillKind, Ground, Hatch};
@@ -15,12 +16,14 @@ use crate::scene::{Canvas, Fill, FillKind, Ground, Hatch};
 use super::budget::{BANK, DOT, Exceeded, LINE, PROFILE};
 use super::dashes::Dashes;
 use super::dots::Dotting;
-use super::edge::Contact;
+use super::edge::{Bank, Contact};
 use super::job::{Job, Piece, Scratch};
 use super::lattice::Lattice;
 use super::lines::Line;
 use super::palette::Batch;
 use super::solid;
+use super::torus::overhang;
+use super::weave::{Along, Bond, Weave};
 
 /// Lines that one thread draws at a time; they also make a bundle.
 const BAND: usize = 64;
@@ -62,14 +65,64 @@ fn nearest(job: &Job<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
 
 /// Draws one fill over all that is left of the region.
 fn even(job: &Job<'_>, canvas: &Canvas, fill: &Fill, angle: Angle) -> Result<Vec<Vec<Batch>>, Exceeded> {
-    let frame = Frame::new(canvas.bounds().centre(), angle.unit());
+    let Some(period) = canvas.period() else { return even_over(job, canvas, fill, (angle.unit(), None)) };
+    let area = Region::rect(canvas.bounds().grown(beyond(fill)));
+    let region = job.bank.region().intersection(&area);
+    let bank = Bank::new(&region);
+    let job = Job { bank: &bank, ..*job };
+    let Some(hatch) = fill.kind.hatch() else { return even_over(&job, canvas, fill, (angle.unit(), None)) };
+    let weave = Weave::new(period, angle.unit(), hatch.pitch);
+    let mut fill = fill.clone();
+    match &mut fill.kind {
+        FillKind::Lines(hatch) | FillKind::Dashes { hatch, .. } | FillKind::Dots { hatch, .. } => {
+            hatch.pitch = Length::mm(weave.pitch);
+        }
+        FillKind::Solid => {}
+    }
+    even_over(&job, canvas, &fill, (weave.along, Some(&weave)))
+}
+
+/// How far beyond the borders of a page that repeats a ground is drawn, in millimetres: so far that nothing on the page is
+/// left out because too little of it lies on this side.
+pub(super) fn beyond(fill: &Fill) -> f64 {
+    match &fill.kind {
+        FillKind::Lines(hatch) | FillKind::Dashes { hatch, .. } => overhang(hatch.pen) + hatch.shortest.to_mm(),
+        FillKind::Dots { radius, .. } => 2.0 * radius.to_mm(),
+        FillKind::Solid => BLEED,
+    }
+}
+
+/// How far beyond the borders of a page that repeats areas reach, in millimetres.
+const BLEED: f64 = 0.5;
+
+/// Draws one fill in a direction; on a page that repeats, as a weave has it.
+fn even_over(
+    job: &Job<'_>,
+    canvas: &Canvas,
+    fill: &Fill,
+    (direction, weave): (Vec2, Option<&Weave>),
+) -> Result<Vec<Vec<Batch>>, Exceeded> {
+    let frame = Frame::new(canvas.bounds().centre(), direction);
     let mut region = Profile::default();
     region.set(&job.bank.region().bounds().corners(), &frame);
     let plane = Plane { job, frame, region };
     match &fill.kind {
         FillKind::Lines(hatch) => plane.lines(hatch, None),
-        FillKind::Dashes { hatch, dash, gap } => plane.lines(hatch, Some(&Dashes::new(*dash, *gap))),
-        FillKind::Dots { hatch, spacing, radius } => plane.dots(&Dotting::new(hatch, *spacing, *radius)),
+        FillKind::Dashes { hatch, dash, gap } => {
+            let dashes = Dashes::new(*dash, *gap);
+            let dashes = match weave {
+                Some(weave) => dashes.woven(weave.along(*dash + *gap, Bond::Bricks)),
+                None => dashes,
+            };
+            plane.lines(hatch, Some(&dashes))
+        }
+        FillKind::Dots { hatch, spacing, radius } => {
+            let along = match weave {
+                Some(weave) => weave.along(*spacing, Bond::Rows),
+                None => Along { step: spacing.to_mm(), drift: 0.0 },
+            };
+            plane.dots(&Dotting::new(hatch, Length::mm(along.step), *radius), along.drift)
+        }
         FillKind::Solid => {
             let drawn = (0..job.tiles.len()).filter(|&tile| job.tiles.is_drawn(tile));
             let outlines = drawn.map(|tile| job.tiles.outline(tile).to_vec()).collect();
@@ -138,8 +191,10 @@ impl Plane<'_> {
         })
     }
 
-    fn dots(&self, dotting: &Dotting<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
-        let row = dotting.along(self.region.along());
+    /// Dots that lie further back by `drift` on every line a millimetre across.
+    fn dots(&self, dotting: &Dotting<'_>, drift: f64) -> Result<Vec<Vec<Batch>>, Exceeded> {
+        let along = self.region.along();
+        let row = dotting.along(along, 0.0);
         let count = row.count() * Lattice::cell(self.region.across(), 0.0, dotting.hatch.pitch.to_mm()).count();
         if count * (DOT + BANK) as f64 > self.job.budget.most_work() as f64 {
             return Err(Exceeded::Places { what: "dots of ground", count: count as u64 });
@@ -148,7 +203,7 @@ impl Plane<'_> {
             for &(number, v) in band {
                 self.job.budget.work(row.count() * (DOT + BANK) as f64)?;
                 let start = out.dots.len();
-                for (_, u) in row.places() {
+                for (_, u) in dotting.along(along, -v * drift).places() {
                     let centre = self.frame.page(u, v);
                     if self.is_free(centre, dotting.radius, scratch)? {
                         out.dots.push(centre);

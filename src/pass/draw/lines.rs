@@ -165,7 +165,7 @@ impl Line<'_> {
             scratch.others.clear();
             for &range in scratch.ranges.as_slice() {
                 job.budget.work(dashes.count(range))?;
-                dashes.cut(range, self.number, &mut scratch.others);
+                dashes.cut(range, (self.number, self.v), &mut scratch.others);
             }
             scratch.ranges.intersect(&scratch.others);
             // Dashes that are meant to be short are not too short.

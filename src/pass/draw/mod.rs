@@ -19,6 +19,8 @@ mod lines;
 mod nearby;
 mod palette;
 mod solid;
+mod torus;
+mod weave;
 
 #[cfg(test)]
 mod tests;
@@ -28,14 +30,15 @@ pub use assemble::{Assembly, Item, Setting, items};
 use crate::diag::Diagnostic;
 use crate::drawing::Layer;
 use crate::pass::cut::visible;
-use crate::scene::{Canvas, Limits, Paint};
+use crate::scene::{Canvas, Ground, Limits, Paint};
 use crate::stage::{Angles, Graph, Sites, Tiles};
 
 use budget::{Budget, Exceeded};
 use edge::Bank;
 use job::Job;
 use nearby::Nearby;
-use palette::{Batch, Palette};
+use palette::Palette;
+use torus::Unrolled;
 
 /// What the earlier passes found for one paint.
 #[derive(Debug, Clone, Copy)]
@@ -62,22 +65,33 @@ pub fn draw(
     limits: &Limits,
 ) -> Result<Vec<Layer>, Diagnostic> {
     let visible = visible(paint, canvas);
-    let &Stages { sites, graph, angles, tiles } = stages;
+    let unrolled = stages.sites.torus.as_ref().and_then(|_| Unrolled::new(stages, torus::reach(paint, stages)));
+    let &Stages { sites, graph, angles, tiles } = &unrolled.as_ref().map_or(*stages, Unrolled::stages);
     let (bank, nearby) = (Bank::new(&visible), Nearby::new(sites, tiles));
     let (palette, budget) = (Palette::new(paint, setting.ink), Budget::new(limits));
     let job =
         Job { paint, sites, graph, angles, tiles, bank: &bank, nearby: &nearby, palette: &palette, budget: &budget };
-    let chunks = chunks(&job, canvas).map_err(|exceeded| match exceeded {
+    layers(&job, canvas, setting).map_err(|exceeded| match exceeded {
         Exceeded::Overlap { .. } => exceeded.diagnostic(limits, paint.tone.place_span).note(paint.span, "painted here"),
         _ => exceeded.diagnostic(limits, paint.span),
-    })?;
-    Ok(palette.layers(&paint.name, &setting.groups, chunks))
+    })
 }
 
 /// The ground and then the tiles.
-fn chunks(job: &Job<'_>, canvas: &Canvas) -> Result<Vec<Vec<Batch>>, Exceeded> {
+fn layers(job: &Job<'_>, canvas: &Canvas, setting: &Setting) -> Result<Vec<Layer>, Exceeded> {
     forecast::check(job)?;
-    let mut chunks = ground::draw(job, canvas)?;
-    chunks.extend(job.in_chunks(|scratch, tile, out| job.draw_tile(scratch, tile, out))?);
-    Ok(chunks)
+    let ground = ground::draw(job, canvas)?;
+    let tiles = job.in_chunks(|scratch, tile, out| job.draw_tile(scratch, tile, out))?;
+    let layers = |chunks| job.palette.layers(&job.paint.name, &setting.groups, chunks);
+    let Some(period) = canvas.period() else { return Ok(layers(ground.into_iter().chain(tiles).collect())) };
+    // A ground of its own is drawn beyond the borders already; what belongs to tiles is drawn once.
+    let (mut done, once) = match &job.paint.tone.ground {
+        Some(Ground::Fill { .. }) => (layers(ground), tiles),
+        Some(Ground::Nearest) | None => (Vec::new(), ground.into_iter().chain(tiles).collect()),
+    };
+    for layer in layers(once) {
+        done.push(torus::wrap(layer, period, job.budget.limit() as u64)?);
+    }
+    done.retain(|layer| layer.marks() > 0);
+    Ok(done)
 }

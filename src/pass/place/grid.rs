@@ -1,7 +1,7 @@
 //! Square and oblong lattices, row by row.
 
 use crate::diag::Diagnostic;
-use crate::geom::Point;
+use crate::geom::{Length, Point, whole_steps};
 use crate::scene::{GridSize, Placement};
 use crate::stage::Sites;
 
@@ -9,20 +9,28 @@ use super::{Ground, ON_EDGE};
 
 /// A lattice over the domain that goes on into the bleed as far as sites lie in it.
 ///
-/// With a spacing it is centred, with as many columns as come nearest to filling the domain; with columns and rows it
-/// fills the domain exactly. The spacing of oblong cells is the side of a square of the same area.
+/// With a spacing it is centred, with as many columns as come nearest to filling the domain; with columns and rows, and
+/// on a torus, it fills the domain exactly. The spacing of oblong cells is the side of a square of the same area.
 pub(super) fn place(placement: &Placement, ground: &Ground<'_>, size: GridSize) -> Result<Sites, Diagnostic> {
     let domain = &ground.domain;
     let (across, down, spacing) = match size {
+        GridSize::Spacing(side) if ground.torus.is_some() => {
+            let count = |length: f64| whole_steps(Length::mm(length), side, 1);
+            let (columns, rows) = (count(domain.width()), count(domain.height()));
+            let across = Axis::filled(domain.min.x, domain.width(), columns);
+            let down = Axis::filled(domain.min.y, domain.height(), rows);
+            (across, down, (domain.width() / columns * (domain.height() / rows)).sqrt())
+        }
         GridSize::Spacing(side) => {
             let side = side.to_mm();
             let across = Axis::centred(domain.min.x, domain.max.x, side);
             (across, Axis::centred(domain.min.y, domain.max.y, side), side)
         }
         GridSize::Cells { columns, rows } => {
+            let (columns, rows) = (f64::from(columns), f64::from(rows));
             let across = Axis::filled(domain.min.x, domain.width(), columns);
             let down = Axis::filled(domain.min.y, domain.height(), rows);
-            (across, down, (domain.width() / f64::from(columns) * (domain.height() / f64::from(rows))).sqrt())
+            (across, down, (domain.width() / columns * (domain.height() / rows)).sqrt())
         }
     };
     let default_bleed = match size {
@@ -72,8 +80,8 @@ impl Axis {
         Self::Centred { centre: min + (max - min) * 0.5, count: ((max - min) / step).round().max(1.0), step }
     }
 
-    fn filled(start: f64, width: f64, count: u32) -> Self {
-        Self::Filled { start, width, count: f64::from(count) }
+    fn filled(start: f64, width: f64, count: f64) -> Self {
+        Self::Filled { start, width, count }
     }
 
     /// The middle of a cell. Written so that a grid of 8 over 6 mm stands at 0.375 + 0.75 i to the last bit.

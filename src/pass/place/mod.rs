@@ -11,10 +11,10 @@ mod poisson;
 mod uniform;
 
 use crate::diag::Diagnostic;
-use crate::geom::{Point, Rect};
+use crate::geom::{Period, Point, Rect};
 use crate::random::{Key, Stream};
 use crate::scene::{Amount, Canvas, Domain, GridSize, Limits, Paint, Placement};
-use crate::stage::Sites;
+use crate::stage::{Sites, Torus};
 use budget::Budget;
 
 /// Finds the sites of a paint. There may be none, for instance where the domain is empty.
@@ -26,19 +26,29 @@ pub fn place(paint: &Paint, canvas: &Canvas, limits: &Limits) -> Result<Sites, D
     let domain = if is_counted(&tone.place) {
         paint.region.bounds()
     } else {
-        match tone.domain {
-            Domain::Canvas => canvas.bounds(),
-            Domain::Region => paint.region.bounds(),
+        match (tone.domain, canvas.period()) {
+            // A lattice or a distance that ended at the region's box would not go on beyond the border.
+            (Domain::Canvas, _) | (Domain::Region, Some(_)) => canvas.bounds(),
+            (Domain::Region, None) => paint.region.bounds(),
         }
     };
+    // What counts its tiles in a smaller box than the page goes round nothing.
+    let torus = canvas.period().filter(|_| domain == canvas.bounds());
     let ground = Ground {
         domain: if domain.is_empty() { Rect::new(Point::default(), Point::default()) } else { domain },
-        bleed: tone.bleed.map(|bleed| bleed.to_mm()),
+        // A torus has no edges that should be full.
+        bleed: if torus.is_some() { Some(0.0) } else { tone.bleed.map(|bleed| bleed.to_mm()) },
         seed: paint.seed,
         name: &paint.name,
         budget: Budget::new(limits.tiles, tone.place_span),
+        torus,
     };
-    find(&tone.place, &ground)
+    let mut sites = find(&tone.place, &ground)?;
+    if let Some(period) = canvas.period() {
+        sites.points.iter_mut().for_each(|site| *site = period.wrapped(*site));
+        sites.torus = Some(Torus { period, images: Vec::new() });
+    }
+    Ok(sites)
 }
 
 /// Whether a placement has so many tiles in its domain, which is then the region's box and has no bleed of its own.
@@ -89,6 +99,8 @@ struct Ground<'a> {
     seed: u64,
     name: &'a str,
     budget: Budget,
+    /// The period, where the domain goes on beyond its borders.
+    torus: Option<Period>,
 }
 
 impl Ground<'_> {
@@ -111,7 +123,7 @@ impl Ground<'_> {
 
     /// Sites without cells.
     fn sites(&self, points: Vec<Point>, spacing: f64, default_bleed: f64) -> Sites {
-        Sites { points, domain: self.domain, extent: self.extent(default_bleed), spacing, cells: None }
+        Sites { points, domain: self.domain, extent: self.extent(default_bleed), spacing, cells: None, torus: None }
     }
 }
 
