@@ -322,6 +322,21 @@ pub enum Placement {
     Points(Vec<Point>),
 }
 
+/// How far stamps without a size are enlarged where sites lie irregularly: at 1.4 squares on Poisson-disk sites leave
+/// 7 % of the paper open, at 1.6 under 2 %.
+const IRREGULAR_OVERLAP: f64 = 1.6;
+
+impl Placement {
+    /// The overlap of stamps that have neither a size nor an overlap of their own.
+    #[must_use]
+    pub fn default_overlap(&self) -> f64 {
+        match self {
+            Self::Poisson { .. } | Self::Uniform { .. } | Self::Points(_) => IRREGULAR_OVERLAP,
+            Self::Grid(_) | Self::Hex { .. } => 1.0,
+        }
+    }
+}
+
 /// How many uniform points there are.
 #[derive(Debug, Clone, Serialize)]
 #[serde(rename_all = "snake_case")]

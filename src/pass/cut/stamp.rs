@@ -3,10 +3,6 @@
 use crate::geom::{Angle, Length, Point, Vec2};
 use crate::scene::{Placement, Shape};
 
-/// How far stamps without a size are enlarged where sites lie irregularly: at 1.4 squares on Poisson-disk sites leave
-/// 7 % of the paper open, at 1.6 under 2 %.
-const IRREGULAR_OVERLAP: f64 = 1.6;
-
 /// An outline round the origin at angle 0, clockwise on the page.
 pub(super) struct Stamp {
     corners: Vec<Vec2>,
@@ -20,7 +16,7 @@ impl Stamp {
         let scale = |overlap: Option<f64>, is_sized: bool| match overlap {
             Some(overlap) => overlap,
             None if is_sized => 1.0,
-            None => default_overlap(place),
+            None => place.default_overlap(),
         };
         let or_spacing = |size: Option<Length>| size.map_or(spacing, Length::to_mm);
         match *shape {
@@ -47,14 +43,6 @@ impl Stamp {
         let across = along.turned();
         ring.clear();
         ring.extend(self.corners.iter().map(|corner| site + along * corner.x + across * corner.y));
-    }
-}
-
-/// The overlap of stamps that have none of their own.
-fn default_overlap(place: &Placement) -> f64 {
-    match place {
-        Placement::Poisson { .. } | Placement::Uniform { .. } | Placement::Points(_) => IRREGULAR_OVERLAP,
-        Placement::Grid(_) | Placement::Hex { .. } => 1.0,
     }
 }
 

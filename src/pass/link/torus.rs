@@ -83,8 +83,10 @@ impl Cover {
                 }
             }
         }
-        // Round a site that lies on no rim there are as many triangles as neighbours.
-        (0..self.own).all(|site| corners[site] == graph.neighbours(site).len())
+        // Where the first site has triangles, only sites at the place of an earlier one have none. Round a site that lies on
+        // no rim there are as many triangles as neighbours.
+        corners.first().is_none_or(|&count| count > 0)
+            && (0..self.own).all(|site| corners[site] == graph.neighbours(site).len())
     }
 
     /// Whether the circle through three points lies in the area.
