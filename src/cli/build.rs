@@ -13,7 +13,7 @@ use crate::scene::Limits;
 use crate::{Compiled, Config, compile};
 
 use super::files::{Opened, Pending, open, plain, print, write_beside};
-use super::picture::{Embed, metadata, take_over};
+use super::picture::{Embed, Form, metadata, take_over};
 use super::progress::Progress;
 use super::{Ended, SceneArgs, report};
 
@@ -37,6 +37,9 @@ pub(super) struct BuildArgs {
     /// Draw this paint alone
     #[arg(long, value_name = "PAINT")]
     only: Option<String>,
+    /// What an SVG is: a page, or a swatch with the page as a pattern, for a canvas that repeats
+    #[arg(long = "as", value_enum, value_name = "FORM")]
+    form: Option<Form>,
     /// What the pictures carry so that they can be built again
     #[arg(long, value_enum, default_value_t = Embed::Text)]
     embed: Embed,
@@ -131,6 +134,9 @@ fn outputs(arguments: &BuildArgs) -> Result<Vec<(PathBuf, Kind)>, String> {
         outputs.push(PathBuf::from(name));
     }
     let several = arguments.seeds.is_some_and(|Seeds(from, to)| from < to);
+    if arguments.form == Some(Form::Pattern) && outputs.iter().all(|output| kind_of(output) != Ok(Kind::Svg)) {
+        return Err("`--as pattern` is about SVG: no output ends in .svg".to_owned());
+    }
     for (i, output) in outputs.iter().enumerate() {
         if several && !output.to_string_lossy().contains("{seed}") {
             return Err(format!("{}: with several seeds an output needs {{seed}} in its name", output.display()));
@@ -159,6 +165,7 @@ fn build(arguments: &BuildArgs, opened: &Opened, outputs: &[(PathBuf, Kind)], se
     config.lower.dpi = arguments.dpi;
     config.only.clone_from(&arguments.only);
     take_over(&mut config, opened);
+    let form = arguments.form.or_else(|| Form::of(opened)).unwrap_or(Form::Page);
     let mut compiled = compile(&opened.path, &opened.loader, &config, &mut progress);
     if outputs.iter().any(|(_, kind)| *kind == Kind::Png) {
         check_pixels(&mut compiled, &config.lower.limits);
@@ -173,13 +180,18 @@ fn build(arguments: &BuildArgs, opened: &Opened, outputs: &[(PathBuf, Kind)], se
     if ended != Ended::Done {
         return ended;
     }
-    let metadata = metadata(arguments.embed, &config, opened, &compiled);
+    let repeats = compiled.lowered.scene.as_ref().is_some_and(|scene| scene.canvas.period().is_some());
+    if form == Form::Pattern && !repeats {
+        eprintln!("kake: a pattern needs a canvas that repeats: `canvas {{ … repeat: true }}`");
+        return Ended::Fault;
+    }
+    let metadata = metadata(arguments.embed, &config, (opened, form), &compiled);
     // All are written beside their places first, so that a full disk leaves every old file as it was.
     let mut pending = Vec::new();
     for (output, kind) in outputs {
         progress.step(kind.name(), "");
         let target = target(output, seed);
-        match write(drawing, metadata.as_ref(), *kind, &target) {
+        match write(drawing, metadata.as_ref(), (*kind, form), &target) {
             Ok(file) => pending.extend(file.map(|file| (target, file))),
             Err(error) => return cannot_write(&target, &error),
         }
@@ -244,9 +256,20 @@ fn check_pixels(compiled: &mut Compiled, limits: &Limits) {
 }
 
 /// Writes one output beside its place; standard output is written at once.
-fn write(drawing: &Drawing, metadata: Option<&Metadata>, kind: Kind, target: &Path) -> io::Result<Option<Pending>> {
+fn write(
+    drawing: &Drawing,
+    metadata: Option<&Metadata>,
+    (kind, form): (Kind, Form),
+    target: &Path,
+) -> io::Result<Option<Pending>> {
     let fill = |out: &mut dyn Write| match kind {
-        Kind::Svg => svg::write(drawing, metadata, out),
+        Kind::Svg => match form {
+            Form::Page => svg::write(drawing, metadata, out),
+            Form::Pattern => {
+                let stem = target.file_stem().unwrap_or_default().to_string_lossy();
+                svg::write_pattern(drawing, &stem, metadata, out)
+            }
+        },
         Kind::Json => json::write(drawing, out),
         Kind::Png => png::write(drawing, metadata, out).map_err(|error| match error {
             png::PngError::Io(error) => error,
