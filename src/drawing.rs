@@ -157,6 +157,11 @@ impl Curves {
         self.points.len()
     }
 
+    /// All points of all chains, to be moved.
+    pub fn points_mut(&mut self) -> impl Iterator<Item = &mut Point> {
+        self.points.iter_mut()
+    }
+
     /// Where each tile's chains end, as numbers of chains, ascending. Chains after the last end belong to no tile.
     #[must_use]
     pub fn bundle_ends(&self) -> &[usize] {
@@ -166,9 +171,14 @@ impl Curves {
     /// A chain: 3n + 1 points; none where there are fewer chains.
     #[must_use]
     pub fn chain(&self, i: usize) -> &[Point] {
-        let start = if i == 0 { 0 } else { self.ends.get(i - 1).copied().unwrap_or(0) };
+        let start = self.start(i);
         let end = self.ends.get(i).copied().unwrap_or(start);
         self.points.get(start..end).unwrap_or_default()
+    }
+
+    /// Where a chain starts in `points`.
+    fn start(&self, i: usize) -> usize {
+        if i == 0 { 0 } else { self.ends.get(i - 1).copied().unwrap_or(0) }
     }
 
     /// All chains in order.
@@ -203,15 +213,19 @@ impl Tapers {
         self.widths.extend_from_slice(&other.widths);
     }
 
+    /// A stroke: spine, and the widths at its joints; none where there are fewer.
+    #[must_use]
+    pub fn stroke(&self, i: usize) -> Option<(&[Point], &[f64])> {
+        let spine = self.spines.chain(i);
+        // Each chain before has 3n + 1 points and n + 1 widths.
+        let start = (self.spines.start(i) + 2 * i) / 3;
+        let widths = self.widths.get(start..start + spine.len() / 3 + 1)?;
+        (!spine.is_empty()).then_some((spine, widths))
+    }
+
     /// All strokes in order: spine, and the widths at its joints.
     pub fn iter(&self) -> impl Iterator<Item = (&[Point], &[f64])> {
-        let mut start = 0;
-        self.spines.iter().map(move |spine| {
-            let joints = spine.len() / 3 + 1;
-            let widths = self.widths.get(start..start + joints).unwrap_or_default();
-            start += joints;
-            (spine, widths)
-        })
+        (0..self.spines.len()).filter_map(|i| self.stroke(i))
     }
 }
 

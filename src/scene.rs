@@ -318,8 +318,45 @@ pub enum Placement {
         /// The distance of neighbours, greater than zero.
         spacing: Length,
     },
+    /// Equilateral triangles.
+    Triangles {
+        /// The side, greater than zero.
+        edge: Length,
+    },
+    /// Penrose's thick and thin rhombs.
+    Penrose {
+        /// The side of all rhombs, greater than zero.
+        edge: Length,
+    },
+    /// The pinwheel tiling.
+    Pinwheel {
+        /// The short leg of a triangle, greater than zero; the long one is twice as long.
+        edge: Length,
+    },
     /// Sites that are given; bleed and domain do not move them.
     Points(Vec<Point>),
+    /// Another placement whose sites have moved to the middles of their Voronoi cells.
+    Relaxed {
+        /// Where they come from.
+        placement: Box<Placement>,
+        /// How often they have moved, at most 1000 times.
+        rounds: u32,
+    },
+}
+
+impl Placement {
+    /// Whether it has cells of its own.
+    #[must_use]
+    pub fn is_tiling(&self) -> bool {
+        match self {
+            Self::Grid(_)
+            | Self::Hex { .. }
+            | Self::Triangles { .. }
+            | Self::Penrose { .. }
+            | Self::Pinwheel { .. } => true,
+            Self::Poisson { .. } | Self::Uniform { .. } | Self::Points(_) | Self::Relaxed { .. } => false,
+        }
+    }
 }
 
 /// How far stamps without a size are enlarged where sites lie irregularly: at 1.4 squares on Poisson-disk sites leave
@@ -331,8 +368,13 @@ impl Placement {
     #[must_use]
     pub fn default_overlap(&self) -> f64 {
         match self {
-            Self::Poisson { .. } | Self::Uniform { .. } | Self::Points(_) => IRREGULAR_OVERLAP,
-            Self::Grid(_) | Self::Hex { .. } => 1.0,
+            Self::Poisson { .. }
+            | Self::Uniform { .. }
+            | Self::Penrose { .. }
+            | Self::Pinwheel { .. }
+            | Self::Points(_)
+            | Self::Relaxed { .. } => IRREGULAR_OVERLAP,
+            Self::Grid(_) | Self::Hex { .. } | Self::Triangles { .. } => 1.0,
         }
     }
 }
@@ -408,6 +450,43 @@ pub enum Shape {
         /// Does not turn with the tile's angle.
         upright: bool,
     },
+    /// An equilateral triangle round the site; at angle 0 it stands on a side.
+    Triangle {
+        /// The side; where it is not given, that of a triangle as large as a square of the placement's spacing.
+        size: Option<Length>,
+        /// Scales it.
+        overlap: Option<f64>,
+        /// Does not turn with the tile's angle.
+        upright: bool,
+    },
+    /// A trapezoid round the site that narrows along the strokes of the first layer, alike on both sides.
+    Trapezoid {
+        /// By which share the narrow end is shorter than the wide one, from 0 to 1.
+        taper: f64,
+        /// The wide end and the distance of both; where it is not given, those of a trapezoid as large as a square of the
+        /// placement's spacing.
+        size: Option<Length>,
+        /// Scales it.
+        overlap: Option<f64>,
+        /// Does not turn with the tile's angle.
+        upright: bool,
+    },
+    /// Any outline.
+    Stamp {
+        /// Corners as seen from the site, clockwise on the page; their sides do not cross.
+        outline: Vec<Point>,
+        /// The longer side of the box round it, where it is not that of the corners.
+        size: Option<Length>,
+        /// Scales it.
+        overlap: Option<f64>,
+        /// Does not turn with the tile's angle.
+        upright: bool,
+    },
+    /// The cell of the site in a tiling.
+    Cell {
+        /// How far the cell is drawn in, not negative.
+        inset: Length,
+    },
     /// The Voronoi cell of the site.
     Voronoi {
         /// How far the cell is drawn in, not negative.
@@ -422,8 +501,12 @@ impl Shape {
     #[must_use]
     pub fn is_cell(&self) -> bool {
         match self {
-            Self::Rect { .. } | Self::Hexagon { .. } => false,
-            Self::Voronoi { .. } => true,
+            Self::Rect { .. }
+            | Self::Hexagon { .. }
+            | Self::Triangle { .. }
+            | Self::Trapezoid { .. }
+            | Self::Stamp { .. } => false,
+            Self::Voronoi { .. } | Self::Cell { .. } => true,
         }
     }
 }
@@ -434,6 +517,8 @@ impl Shape {
 pub enum Link {
     /// Those joined by the Delaunay triangulation of the sites.
     Delaunay,
+    /// Cells of a tiling that share an edge, or a part of one.
+    Edges,
 }
 
 /// How tiles are turned.

@@ -1,6 +1,6 @@
 //! The types between the passes. Each is complete when it is made and never changed after.
 
-use crate::geom::{Angle, Period, Point, Rect, Vec2};
+use crate::geom::{Angle, Figure, Period, Pieces, Point, Rect, Vec2};
 
 /// Where the tiles of a paint lie.
 #[derive(Debug, Clone)]
@@ -9,12 +9,15 @@ pub struct Sites {
     pub points: Vec<Point>,
     /// The area that sites were asked for.
     pub domain: Rect,
-    /// The domain grown by the bleed: every site but those of `points([…])` lies in it.
+    /// The domain grown by the bleed: every site but those of `points([…])` lies in it, or the site's cell in a tiling
+    /// touches it.
     pub extent: Rect,
     /// The distance of neighbouring sites that shapes are sized by, in millimetres; greater than zero.
     pub spacing: f64,
     /// Column and row of every site of a grid.
     pub cells: Option<Vec<[i32; 2]>>,
+    /// The cells of a tiling, one for every site, where something asks for them. They cover the extent.
+    pub tiling: Option<Tiling>,
     /// On a page that repeats: the period, and what is known of images.
     pub torus: Option<Torus>,
 }
@@ -27,6 +30,44 @@ pub struct Torus {
     /// The site that each of the last sites is an image of, a whole number of periods away. Only the drawing pass adds
     /// images, so that what lies beyond a border is found like any other tile; all other sites lie in the first period.
     pub images: Vec<u32>,
+}
+
+/// Cells that lie side by side without gap or overlap.
+#[derive(Debug, Clone, Default)]
+pub struct Tiling {
+    /// Corners of all cells, one after the other, each convex and clockwise on the page.
+    corners: Vec<Point>,
+    /// Where each cell ends in `corners`.
+    ends: Vec<u32>,
+    /// The pairs of cells that share an edge or a part of one, each once in any order.
+    pub edges: Vec<[u32; 2]>,
+}
+
+impl Tiling {
+    /// Adds a cell by its corners, clockwise on the page.
+    pub fn push(&mut self, ring: &[Point]) {
+        self.corners.extend_from_slice(ring);
+        self.ends.push(self.corners.len() as u32);
+    }
+
+    /// How many cells there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
+    /// The corners of a cell.
+    #[must_use]
+    pub fn cell(&self, number: usize) -> &[Point] {
+        let start = if number == 0 { 0 } else { self.ends[number - 1] as usize };
+        &self.corners[start..self.ends[number] as usize]
+    }
 }
 
 impl Sites {
@@ -42,6 +83,13 @@ impl Sites {
     pub fn original(&self, site: usize) -> usize {
         let image = self.torus.as_ref().zip(site.checked_sub(self.own()));
         image.and_then(|(torus, image)| torus.images.get(image)).map_or(site, |&site| site as usize)
+    }
+
+    /// The sites that are no images.
+    #[must_use]
+    pub fn without_images(&self) -> Self {
+        let torus = self.torus.as_ref().map(|torus| Torus { images: Vec::new(), ..torus.clone() });
+        Self { points: self.points[..self.own()].to_vec(), torus, ..self.clone() }
     }
 
     /// The period of a page that repeats.
@@ -198,6 +246,10 @@ pub struct Tiles {
     corners: Vec<Point>,
     /// Where the outline of tile i ends in `corners`.
     ends: Vec<u32>,
+    /// How outlines that are not convex fall into convex pieces.
+    pieces: Pieces,
+    /// Corners of all pieces of all tiles, as many for each.
+    piece_corners: Vec<Point>,
     /// The field's value at the site, clamped to 0..=4.
     pub k: Vec<f64>,
     /// What of it is drawn.
@@ -209,7 +261,7 @@ pub struct Tiles {
 }
 
 impl Tiles {
-    /// From one ring of corners a tile; the lists have one entry a tile.
+    /// From one convex ring of corners a tile; the lists have one entry a tile.
     #[must_use]
     pub fn new(
         rings: impl IntoIterator<Item = impl AsRef<[Point]>>,
@@ -224,7 +276,19 @@ impl Tiles {
             corners.extend_from_slice(ring.as_ref());
             ends.push(corners.len() as u32);
         }
-        Self { corners, ends, k, layers, standing, inside }
+        Self { corners, ends, pieces: Pieces::default(), piece_corners: Vec::new(), k, layers, standing, inside }
+    }
+
+    /// The same tiles with outlines that are not convex, but all fall into pieces in one way. None of them is empty.
+    #[must_use]
+    pub fn in_pieces(mut self, pieces: &Pieces) -> Self {
+        let mut corners = Vec::with_capacity(self.len() * pieces.len());
+        if !pieces.is_empty() {
+            (0..self.len()).for_each(|tile| corners.extend(pieces.corners(self.outline(tile))));
+        }
+        self.pieces = pieces.clone();
+        self.piece_corners = corners;
+        self
     }
 
     /// The same tiles and, after them, images of some, each moved.
@@ -242,6 +306,7 @@ impl Tiles {
             // An image is measured where its original is.
             self.inside.iter().copied().chain(images.iter().map(|_| false)).collect(),
         )
+        .in_pieces(&self.pieces)
     }
 
     /// How many tiles there are.
@@ -261,6 +326,13 @@ impl Tiles {
     pub fn outline(&self, tile: usize) -> &[Point] {
         let start = if tile == 0 { 0 } else { self.ends[tile - 1] as usize };
         &self.corners[start..self.ends[tile] as usize]
+    }
+
+    /// A tile's outline with the convex pieces it is made of.
+    #[must_use]
+    pub fn figure(&self, tile: usize) -> Figure<'_> {
+        let each = self.pieces.len();
+        Figure::new(self.outline(tile), &self.pieces, &self.piece_corners[tile * each..(tile + 1) * each])
     }
 
     /// Whether a tile is drawn and hides what lies under it.

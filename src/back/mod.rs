@@ -9,9 +9,11 @@ pub mod metadata;
 mod number;
 mod outline;
 mod path;
+mod pieces;
 pub mod png;
 pub mod raster;
 pub mod svg;
+mod taper;
 
 /// Drawings that several tests use.
 #[cfg(test)]
@@ -60,9 +62,9 @@ pub(crate) mod samples {
         for i in 0..bundles {
             let centre = Point::new(random.unit() * width, random.unit() * height);
             let mut near = || centre + crate::geom::Vec2::new(random.unit() * 6.0 - 3.0, random.unit() * 6.0 - 3.0);
-            match i % 5 {
+            match i % 7 {
                 0 | 1 => {
-                    let strokes = &mut strokes[i % 5];
+                    let strokes = &mut strokes[i % 7];
                     strokes.lines.extend((0..10).map(|_| [near(), near()]));
                     strokes.bundle_ends.push(strokes.lines.len());
                 }
@@ -71,7 +73,20 @@ pub(crate) mod samples {
                     dots.bundle_ends.push(dots.centres.len());
                 }
                 3 => strokes[1].polylines.push((0..10).map(|_| near()).collect()),
-                _ => red.areas.push(vec![(0..5).map(|_| near()).collect()]),
+                4 => red.areas.push(vec![(0..5).map(|_| near()).collect()]),
+                5 => {
+                    let curves = &mut strokes[i / 7 % 2].curves;
+                    for _ in 0..10 {
+                        curves.push(&[near(), near(), near(), near(), near(), near(), near()]);
+                    }
+                    curves.end_bundle();
+                }
+                _ => {
+                    for _ in 0..10 {
+                        red.tapers.push(&[near(), near(), near(), near(), near(), near(), near()], &[0.3, 0.5, 0.0]);
+                    }
+                    red.tapers.spines.end_bundle();
+                }
             }
         }
         black.strokes.extend(strokes);

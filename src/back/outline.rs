@@ -8,11 +8,15 @@ use std::f64::consts::{PI, TAU};
 
 use tiny_skia::{FillRule, PathBuilder};
 
+use crate::drawing::{Curves, Tapers};
+use crate::geom::bezier::{cubics, flatten};
 use crate::geom::{Length, Point, Rect, Vec2};
 use crate::scene::Cap;
 
 /// How far, in pixels, a round end may stray from the circle.
 const TOLERANCE: f64 = 0.02;
+/// How far, in pixels, lines may stray from a curve that they stand for.
+const FLATTENING: f64 = 0.04;
 /// Marks with a point farther from the sheet's corner, in millimetres, are left out: nothing that is cut to a sheet lies
 /// there, and single precision ends.
 const FAR: f64 = 1e7;
@@ -32,6 +36,11 @@ impl Scale {
     /// Of a raster over a page.
     pub(super) fn new(pixels: [u32; 2], width: Length, height: Length) -> Self {
         Self { x: f64::from(pixels[0]) / width.to_mm(), y: f64::from(pixels[1]) / height.to_mm() }
+    }
+
+    /// How far lines may stray from a curve.
+    fn flattening(self) -> Length {
+        Length::mm(FLATTENING / self.x.max(self.y))
     }
 
     /// A box on the page in pixels.
@@ -92,6 +101,24 @@ pub(super) enum Marks<'a> {
         /// Its points.
         points: &'a [Point],
     },
+    /// Curved strokes with round joins; closed where they end at their first point.
+    Curves {
+        /// Their width.
+        pen: Length,
+        /// How they end.
+        cap: Cap,
+        /// They and others.
+        curves: &'a Curves,
+        /// The first of them, and the first that is none of them.
+        range: [usize; 2],
+    },
+    /// Strokes of changing width.
+    Tapers {
+        /// They and others.
+        tapers: &'a Tapers,
+        /// The first of them, and the first that is none of them.
+        range: [usize; 2],
+    },
     /// Dots.
     Dots {
         /// Their radius.
@@ -110,6 +137,14 @@ impl Marks<'_> {
         match self {
             Self::Lines { pen, lines, .. } => lines.iter().flatten().fold(Rect::EMPTY, around).grown(pen.to_mm()),
             Self::Polyline { pen, points, .. } => points.iter().fold(Rect::EMPTY, around).grown(pen.to_mm()),
+            Self::Curves { pen, curves, range: [from, to], .. } => {
+                (*from..*to).flat_map(|i| curves.chain(i)).fold(Rect::EMPTY, around).grown(pen.to_mm())
+            }
+            Self::Tapers { tapers, range: [from, to] } => {
+                let strokes = || (*from..*to).filter_map(|i| tapers.stroke(i));
+                let bounds = strokes().flat_map(|(spine, _)| spine).fold(Rect::EMPTY, around);
+                bounds.grown(strokes().flat_map(|(_, widths)| widths).fold(0.0, |widest, &width| width.max(widest)))
+            }
             Self::Dots { radius, centres } => centres.iter().fold(Rect::EMPTY, around).grown(radius.to_mm()),
             Self::Area(rings) => rings.iter().flatten().fold(Rect::EMPTY, around),
         }
@@ -142,6 +177,21 @@ impl Outliner {
                 let half = pen.to_mm() / 2.0;
                 self.prepare(half, tile.scale);
                 self.polyline(points, half, cap, tile, path);
+                FillRule::Winding
+            }
+            Marks::Curves { pen, cap, curves, range: [from, to] } => {
+                let half = pen.to_mm() / 2.0;
+                self.prepare(half, tile.scale);
+                let reach = tile.reach(half);
+                for chain in (from..to).map(|i| curves.chain(i)).filter(|chain| is_any_near(chain, &reach)) {
+                    self.polyline(&flatten(chain, tile.scale.flattening()), half, cap, tile, path);
+                }
+                FillRule::Winding
+            }
+            Marks::Tapers { tapers, range: [from, to] } => {
+                for (spine, widths) in (from..to).filter_map(|i| tapers.stroke(i)) {
+                    self.taper(spine, widths, tile, path);
+                }
                 FillRule::Winding
             }
             Marks::Dots { radius, centres } => {
@@ -242,6 +292,35 @@ impl Outliner {
         }
     }
 
+    /// A stroke of changing width: a bar for each short step and what fills the gap at each turn.
+    fn taper(&mut self, spine: &[Point], widths: &[f64], tile: Tile, path: &mut PathBuilder) {
+        let widest = widths.iter().fold(0.0, |widest: f64, &width| width.max(widest)) / 2.0;
+        let reach = tile.reach(widest);
+        if !is_any_near(spine, &reach) {
+            return;
+        }
+        self.prepare(widest, tile.scale);
+        let mut before: Option<Vec2> = None;
+        for (cubic, width) in cubics(spine).zip(widths.windows(2)) {
+            let mut a = cubic.start();
+            let mut half = width[0] / 2.0;
+            let steps = cubic.steps(tile.scale.flattening());
+            for (i, b) in (1..=steps).zip(cubic.flatten(tile.scale.flattening())) {
+                let half_at_b = (width[0] + (width[1] - width[0]) * f64::from(i) / f64::from(steps)) / 2.0;
+                let Some(along) = direction(a, b) else { continue };
+                if is_near(a, b, &reach) {
+                    if let Some(before) = before {
+                        self.join(a, before, along, half, tile, path);
+                    }
+                    let (side, side_at_b) = (along.turned() * half, along.turned() * half_at_b);
+                    trace([a + -side, b + -side_at_b, b + side_at_b, a + side].into_iter(), tile, path);
+                }
+                before = Some(along);
+                (a, half) = (b, half_at_b);
+            }
+        }
+    }
+
     /// Fills the outer side of a turn: with a disc, or with a triangle where that comes near enough to one.
     fn join(&self, p: Point, before: Vec2, after: Vec2, half: f64, tile: Tile, path: &mut PathBuilder) {
         let cos_half = ((1.0 + before.dot(after)) / 2.0).max(0.0).sqrt();
@@ -261,9 +340,7 @@ impl Outliner {
 
 /// The unit vector from one point to another, if they differ.
 fn direction(a: Point, b: Point) -> Option<Vec2> {
-    let way = b - a;
-    let length = way.length();
-    (length > 0.0).then(|| way * (1.0 / length))
+    (b - a).unit()
 }
 
 /// A straight stroke that ends at its points.
@@ -336,4 +413,10 @@ fn is_sound(p: Point) -> bool {
 fn is_near(a: Point, b: Point, reach: &Rect) -> bool {
     let bounds = Rect::new(Point::new(a.x.min(b.x), a.y.min(b.y)), Point::new(a.x.max(b.x), a.y.max(b.y)));
     is_sound(a) && is_sound(b) && bounds.touches(reach)
+}
+
+/// Whether the box around points, all of them sound, touches another.
+fn is_any_near(points: &[Point], reach: &Rect) -> bool {
+    let bounds = points.iter().fold(Rect::EMPTY, |bounds, &p| bounds.including(p));
+    points.iter().all(|&p| is_sound(p)) && bounds.touches(reach)
 }

@@ -12,14 +12,14 @@ use tiny_skia::{Mask, PathBuilder, Transform};
 pub use super::inking::Format;
 use super::inking::Inking;
 use super::outline::{Marks, Outliner, Scale, Tile};
-use crate::drawing::{Drawing, Layer};
+use crate::drawing::{Curves, Drawing, Layer};
 use crate::scene::Colour;
 
 /// Width of a tile in pixels; the scan converter works on up to 8191.
 const TILE_WIDTH: usize = 2_048;
 /// Height of a tile in pixels.
 const TILE_HEIGHT: usize = 256;
-/// Strokes or dots that are filled as one path. Few enough that a path's box stays small.
+/// Strokes, curves or dots that are filled as one path. Few enough that a path's box stays small.
 const TOGETHER: usize = 32;
 
 /// A picture, row by row from the top left.
@@ -132,12 +132,29 @@ fn push_marks<'a>(layer: &'a Layer, push: &mut impl FnMut(Marks<'a>)) {
         for points in &strokes.polylines {
             push(Marks::Polyline { pen, cap, points });
         }
+        for range in together(&strokes.curves) {
+            push(Marks::Curves { pen, cap, curves: &strokes.curves, range });
+        }
+    }
+    for range in together(&layer.tapers.spines) {
+        push(Marks::Tapers { tapers: &layer.tapers, range });
     }
     for dots in &layer.dots {
         for centres in dots.bundles().flat_map(|bundle| bundle.chunks(TOGETHER)) {
             push(Marks::Dots { radius: dots.radius, centres });
         }
     }
+}
+
+/// Chains of one bundle by the [`TOGETHER`]; those of no bundle one by one.
+fn together(curves: &Curves) -> impl Iterator<Item = [usize; 2]> {
+    let ends = curves.bundle_ends();
+    let single = ends.last().copied().unwrap_or(0);
+    let starts = std::iter::once(0).chain(ends.iter().copied());
+    let bundles = starts
+        .zip(ends)
+        .flat_map(|(start, &end)| (start..end).step_by(TOGETHER).map(move |from| [from, end.min(from + TOGETHER)]));
+    bundles.chain((single..curves.len()).map(|i| [i, i + 1]))
 }
 
 /// Which items touch each tile, in drawing order.
@@ -240,7 +257,7 @@ mod tests {
     use super::super::samples::{layer, lines, on_threads, page, ring, scattered};
     use super::*;
     use crate::drawing::{Dots, Strokes};
-    use crate::geom::{Length, Point, Vec2};
+    use crate::geom::{Cubic, Length, Point, Vec2};
     use crate::scene::{Cap, Depth};
 
     const RED: Colour = Colour { r: 255, g: 0, b: 0, a: 255 };
@@ -317,6 +334,41 @@ mod tests {
         assert!((found - 1.5 * 8.0 * 4.0).abs() < 0.2, "{found}");
     }
 
+    /// An arc of a quarter round (1, 1) as one cubic, for the radius 8.
+    fn quarter() -> Vec<Point> {
+        const K: f64 = 8.0 * 0.552_284_749_830_793_4;
+        ring(&[(9.0, 1.0), (9.0, 1.0 + K), (1.0 + K, 9.0), (1.0, 9.0)])
+    }
+
+    #[test]
+    fn curves_and_tapers_cover_their_area() {
+        let pi = std::f64::consts::PI;
+        let quarter = quarter();
+        let curve = |cap| {
+            let mut strokes = Strokes::new(Length::mm(1.0), cap);
+            strokes.curves.push(&quarter);
+            stroked(Colour::BLACK, strokes)
+        };
+        let taper = |spine: &[Point], widths: &[f64]| {
+            let mut layer = layer("taper", Colour::BLACK);
+            layer.tapers.push(spine, widths);
+            layer
+        };
+        let line = Cubic::line(Point::new(1.0, 5.0), Point::new(9.0, 5.0)).0;
+        let corner = [&line[..], &Cubic::line(line[3], Point::new(9.0, 1.0)).0[1..]].concat();
+        for (what, layer, wanted) in [
+            ("butt", curve(Cap::Butt), 4.0 * pi),
+            ("round", curve(Cap::Round), 4.0 * pi + pi / 4.0),
+            ("even", taper(&quarter, &[1.0, 1.0]), 4.0 * pi),
+            ("to a point", taper(&quarter, &[1.0, 0.0]), 2.0 * pi),
+            ("straight", taper(&line, &[2.0, 1.0]), 12.0),
+            ("corner", taper(&corner, &[1.0, 1.0, 0.0]), 8.0 + 2.0 - 0.25 + pi / 16.0 + 0.03),
+        ] {
+            let found = inked(&render(&one(11.0, 11.0, layer))) / 100.0;
+            assert!((found - wanted).abs() < 0.01 * wanted, "{what}: {found} instead of {wanted}");
+        }
+    }
+
     #[test]
     fn crossing_strokes_of_any_sense_are_one_ink() {
         let there = [(1.0, 3.0), (9.0, 5.0)];
@@ -337,10 +389,12 @@ mod tests {
             moved.page = page(600.0, 80.0);
             moved.page.pixels = [4800, 640];
             for layer in &mut moved.layers {
+                layer.tapers.spines.points_mut().for_each(by);
                 layer.areas.iter_mut().flatten().flatten().for_each(by);
                 for strokes in &mut layer.strokes {
                     strokes.lines.iter_mut().flatten().for_each(by);
                     strokes.polylines.iter_mut().flatten().for_each(by);
+                    strokes.curves.points_mut().for_each(by);
                 }
                 layer.dots.iter_mut().flat_map(|dots| &mut dots.centres).for_each(by);
             }
@@ -438,6 +492,7 @@ mod tests {
         for &x in &far {
             for &y in &far {
                 odd.lines.push([Point::new(x, y), Point::new(5.0, 5.0)]);
+                odd.curves.push(&[Point::new(5.0, 5.0), Point::new(x, y), Point::new(y, x), Point::new(1.0, y)]);
                 odd.polylines.push(vec![Point::new(5.0, 5.0), Point::new(x, y), Point::new(y, x)]);
                 area.push(Point::new(x, y));
             }
@@ -447,6 +502,9 @@ mod tests {
             odd.pen = Length::mm(pen);
             let mut layer = stroked(Colour::BLACK, odd.clone());
             layer.areas = area.iter().map(|&p| vec![vec![p, Point::new(1.0, 2.0), Point::new(2.0, 1.0)]]).collect();
+            for spine in odd.curves.iter() {
+                layer.tapers.push(spine, &[pen, 1.0]);
+            }
             let mut drawing = one(10.0, 10.0, layer);
             assert_eq!(render(&drawing).data.len(), 100 * 100);
             for pixels in [[1, 1], [0, 5], [5, 0], [9000, 2], [2, 9000]] {

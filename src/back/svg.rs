@@ -1,33 +1,24 @@
 //! SVG: a drawing goes in, a page in millimetres comes out, as a plotter and an editor want it.
 //!
 //! Groups and paints become Inkscape layers, and within them one group holds all marks of one pen. Strokes are strokes
-//! and end where they end: there are no clip paths, masks or white covers. Each tile is one path; from
-//! `MANY` paths on `TOGETHER` tiles share one, for there are readers that refuse a million elements. Text is made
-//! by several threads in pieces that do not depend on their number.
+//! and end where they end: there are no clip paths, masks or white covers. Strokes that run out are filled outlines. Each tile
+//! is one path; where there are very many several tiles share one, for there are readers that refuse a million elements.
+//! Text is made by several threads in pieces that do not depend on their number.
 
 use std::io::{self, Write};
 
-use rayon::prelude::*;
 use svg::node::Text;
-use svg::node::element::{Element, Group, Pattern, Rectangle, SVG};
+use svg::node::element::{self, Element, Pattern, Rectangle, SVG};
 
 use super::metadata::{ELEMENT, Metadata, NAMESPACE};
 use super::number;
-use super::path::{write_line, write_polyline, write_ring};
+use super::path::{write_curve, write_line, write_outline, write_polyline, write_ring};
+use super::pieces::{self, Group, Marks, Piece, Style};
+use super::taper::outline;
 use crate::drawing::{Drawing, Layer};
-use crate::geom::{Length, Point, ring_area};
+use crate::geom::{Length, ring_area};
 use crate::scene::{Cap, Colour};
 
-/// Up to this number of tiles, longer strokes and areas each has a path of its own.
-const MANY: usize = 20_000;
-/// How many share a path where there are more.
-const TOGETHER: usize = 64;
-/// Strokes of a path that one thread writes at a time.
-const PIECE: usize = 8_192;
-/// Points that one thread writes at a time, unless a single piece has more.
-const PORTION: usize = 16_384;
-/// Portions that are held as text at a time.
-const AT_ONCE: usize = 32;
 /// Writes an SVG.
 ///
 /// # Errors
@@ -47,12 +38,7 @@ const SHOWN: f64 = 2.0;
 ///
 /// # Errors
 /// What `out` answers.
-pub fn write_pattern(
-    drawing: &Drawing,
-    id: &str,
-    metadata: Option<&Metadata>,
-    out: &mut dyn Write,
-) -> io::Result<()> {
+pub fn write_pattern(drawing: &Drawing, id: &str, metadata: Option<&Metadata>, out: &mut dyn Write) -> io::Result<()> {
     write_head(drawing, SHOWN, metadata, out)?;
     let id = pattern_id(id);
     let page = &drawing.page;
@@ -81,7 +67,7 @@ fn pattern_id(name: &str) -> String {
 /// The paper and all layers.
 fn write_page(drawing: &Drawing, out: &mut dyn Write) -> io::Result<()> {
     write_paper(drawing, out)?;
-    let together = if count_paths(drawing) > MANY { TOGETHER } else { 1 };
+    let together = pieces::together(drawing);
     // The groups that are open, outermost first, and whether each is a paint's: a group may have the same name.
     let mut open: Vec<(&str, bool)> = Vec::new();
     let mut ids = 0;
@@ -93,7 +79,7 @@ fn write_page(drawing: &Drawing, out: &mut dyn Write) -> io::Result<()> {
         open.truncate(shared);
         for &(name, paint) in &names[shared..] {
             ids += 1;
-            let group = Group::new()
+            let group = element::Group::new()
                 .set("inkscape:groupmode", "layer")
                 .set("inkscape:label", xml_text(name))
                 .set("id", format!("layer{ids}"));
@@ -103,7 +89,7 @@ fn write_page(drawing: &Drawing, out: &mut dyn Write) -> io::Result<()> {
         // The whole layer is made translucent at once: where its strokes cross they are one ink, as in the raster.
         let translucent = layer.ink.a < 255;
         if translucent {
-            writeln!(out, "{}", open_tag(&Group::new().set("opacity", opacity(layer.ink))))?;
+            writeln!(out, "{}", open_tag(&element::Group::new().set("opacity", opacity(layer.ink))))?;
         }
         write_layer(layer, together, out)?;
         close(usize::from(translucent), out)?;
@@ -178,42 +164,28 @@ fn opacity(colour: Colour) -> String {
     number::text(f64::from(colour.a) / 255.0)
 }
 
-/// How many paths there are with one for each tile, longer stroke and area.
-fn count_paths(drawing: &Drawing) -> usize {
-    let count = |layer: &Layer| {
-        let strokes: usize = layer.strokes.iter().map(|s| s.bundle_ends.len() + s.polylines.len()).sum();
-        let dots: usize = layer.dots.iter().map(|d| d.bundle_ends.len()).sum();
-        layer.areas.len() + strokes + dots
-    };
-    drawing.layers.iter().map(count).sum()
-}
-
 fn write_layer(layer: &Layer, together: usize, out: &mut dyn Write) -> io::Result<()> {
-    if !layer.areas.is_empty() {
-        let group = Group::new().set("fill", layer.ink.hex()).set("fill-rule", "evenodd");
-        write_group(&group, &area_pieces(&layer.areas, together), out)?;
-    }
-    for strokes in &layer.strokes {
-        let mut pieces = bundle_pieces(&strokes.lines, &strokes.bundle_ends, together, Marks::Lines);
-        pieces.extend(strokes.polylines.chunks(together).map(|lines| Piece::whole(Marks::Polylines(lines))));
-        write_group(&stroke_group(layer.ink, strokes.pen, strokes.cap), &pieces, out)?;
-    }
-    for dots in &layer.dots {
-        // A stroke of no length with round ends is a dot to every reader, and to a plotter a touch of the pen.
-        let pieces = bundle_pieces(&dots.centres, &dots.bundle_ends, together, Marks::Dots);
-        write_group(&stroke_group(layer.ink, dots.radius * 2.0, Cap::Round), &pieces, out)?;
+    for Group { style, pieces } in pieces::groups(layer, together) {
+        let element = match style {
+            Style::Areas => element::Group::new().set("fill", layer.ink.hex()).set("fill-rule", "evenodd"),
+            Style::Tapers => element::Group::new().set("fill", layer.ink.hex()),
+            Style::Stroke(pen, cap) => stroke_group(layer.ink, pen, cap),
+        };
+        writeln!(out, "{}", open_tag(&element))?;
+        pieces::write_pieces(&pieces, pieces_text, |text| out.write_all(text))?;
+        close(1, out)?;
     }
     Ok(())
 }
 
-fn stroke_group(ink: Colour, pen: Length, cap: Cap) -> Group {
+fn stroke_group(ink: Colour, pen: Length, cap: Cap) -> element::Group {
     // A pen that rounds to nothing would not be drawn at all.
     let width = number::units_text(number::units(pen.to_mm()).max(1));
     let cap = match cap {
         Cap::Butt => "butt",
         Cap::Round => "round",
     };
-    Group::new()
+    element::Group::new()
         .set("fill", "none")
         .set("stroke", ink.hex())
         .set("stroke-width", width)
@@ -221,104 +193,7 @@ fn stroke_group(ink: Colour, pen: Length, cap: Cap) -> Group {
         .set("stroke-linejoin", "round")
 }
 
-/// What one thread writes without a break: a path or a part of one.
-struct Piece<'a> {
-    marks: Marks<'a>,
-    /// Whether the path starts with it.
-    starts: bool,
-    /// Whether the path ends with it.
-    ends: bool,
-}
-
-#[derive(Clone, Copy)]
-enum Marks<'a> {
-    Lines(&'a [[Point; 2]]),
-    Polylines(&'a [Vec<Point>]),
-    Dots(&'a [Point]),
-    /// One area of any number of rings.
-    Area(&'a [Vec<Point>]),
-    /// Areas of one ring each.
-    Rings(&'a [Vec<Vec<Point>>]),
-}
-
-impl<'a> Piece<'a> {
-    fn whole(marks: Marks<'a>) -> Self {
-        Self { marks, starts: true, ends: true }
-    }
-
-    /// How many points it has.
-    fn points(&self) -> usize {
-        match self.marks {
-            Marks::Lines(lines) => lines.len() * 2,
-            Marks::Polylines(lines) => lines.iter().map(Vec::len).sum(),
-            Marks::Dots(centres) => centres.len(),
-            Marks::Area(rings) => rings.iter().map(Vec::len).sum(),
-            Marks::Rings(areas) => areas.iter().flatten().map(Vec::len).sum(),
-        }
-    }
-}
-
-/// Paths of `together` bundles each; `ends` says where each bundle ends.
-fn bundle_pieces<'a, T>(
-    items: &'a [T],
-    ends: &[usize],
-    together: usize,
-    marks: fn(&'a [T]) -> Marks<'a>,
-) -> Vec<Piece<'a>> {
-    let mut pieces = Vec::with_capacity(ends.len().div_ceil(together));
-    let mut start = 0;
-    for &end in ends.chunks(together).filter_map(|bundles| bundles.last()) {
-        let path = items.get(start..end).unwrap_or_default();
-        let last = path.len().div_ceil(PIECE).saturating_sub(1);
-        pieces.extend(path.chunks(PIECE).enumerate().map(|(i, part)| Piece {
-            marks: marks(part),
-            starts: i == 0,
-            ends: i == last,
-        }));
-        start = end;
-    }
-    pieces
-}
-
-/// A path for each area; where there are many, simple ones that follow each other share one.
-fn area_pieces(areas: &[Vec<Vec<Point>>], together: usize) -> Vec<Piece<'_>> {
-    let is_simple = |area: &Vec<Vec<Point>>| together > 1 && area.len() == 1;
-    areas
-        .chunk_by(|a, b| is_simple(a) && is_simple(b))
-        .flat_map(|run| run.chunks(together))
-        .map(|run| match run {
-            [area] => Piece::whole(Marks::Area(area)),
-            areas => Piece::whole(Marks::Rings(areas)),
-        })
-        .collect()
-}
-
-/// Writes the paths of one pen, the text of several portions being made at a time.
-fn write_group(group: &Group, pieces: &[Piece<'_>], out: &mut dyn Write) -> io::Result<()> {
-    if pieces.is_empty() {
-        return Ok(());
-    }
-    writeln!(out, "{}", open_tag(group))?;
-    let mut portions = Vec::new();
-    let (mut start, mut points) = (0, 0);
-    for (i, piece) in pieces.iter().enumerate() {
-        points += piece.points();
-        if points >= PORTION {
-            portions.push(&pieces[start..=i]);
-            (start, points) = (i + 1, 0);
-        }
-    }
-    portions.push(&pieces[start..]);
-    for several in portions.chunks(AT_ONCE) {
-        let texts: Vec<Vec<u8>> = several.par_iter().map(|pieces| portion_text(pieces)).collect();
-        for text in texts {
-            out.write_all(&text)?;
-        }
-    }
-    close(1, out)
-}
-
-fn portion_text(pieces: &[Piece<'_>]) -> Vec<u8> {
+fn pieces_text(pieces: &[Piece<'_>]) -> Vec<u8> {
     let mut text = Vec::with_capacity(pieces.iter().map(Piece::points).sum::<usize>() * 16 + pieces.len() * 16);
     for piece in pieces {
         if piece.starts {
@@ -329,6 +204,12 @@ fn portion_text(pieces: &[Piece<'_>]) -> Vec<u8> {
         match piece.marks {
             Marks::Lines(lines) => lines.iter().for_each(|line| write_line(line, &mut text)),
             Marks::Polylines(lines) => lines.iter().for_each(|line| write_polyline(line, &mut text)),
+            Marks::Curves(curves, from, to) => (from..to).for_each(|i| write_curve(curves.chain(i), &mut text)),
+            Marks::Tapers(tapers, from, to) => {
+                let rings =
+                    (from..to).filter_map(|i| tapers.stroke(i)).flat_map(|(spine, widths)| outline(spine, widths));
+                rings.for_each(|ring| write_outline(&ring, &mut text));
+            }
             Marks::Dots(centres) => centres.iter().for_each(|&centre| write_line(&[centre, centre], &mut text)),
             Marks::Area(rings) => rings.iter().for_each(|ring| write_ring(ring.iter().copied(), &mut text)),
             Marks::Rings(areas) => areas.iter().flatten().for_each(|ring| {
@@ -352,8 +233,10 @@ mod tests {
     use usvg::roxmltree;
 
     use super::super::samples::{layer, lines, on_threads, page, ring, scattered};
+    use super::pieces::{MANY, PIECE, TOGETHER, area_pieces};
     use super::*;
     use crate::drawing::{Dots, Strokes};
+    use crate::geom::Point;
 
     fn text_of(drawing: &Drawing, metadata: Option<&Metadata>) -> String {
         let mut out = Vec::new();
@@ -369,6 +252,8 @@ mod tests {
         let mut ground = sky.clone();
         ground.ink = Colour { r: 255, g: 0, b: 16, a: 128 };
         ground.strokes = vec![Strokes::new(Length::mm(0.1), Cap::Round)];
+        ground.strokes[0].curves.push(&ring(&[(0.0, 0.0), (1.0, 0.5), (2.0, -0.5), (3.0, 0.0)]));
+        ground.tapers.push(&ring(&[(0.0, 5.0), (1.0, 5.0), (2.0, 5.0), (3.0, 5.0)]), &[0.5, 0.0]);
         ground.strokes[0].polylines = vec![ring(&[(0.0, 0.0), (1.0, 0.5), (2.0, 0.0), (0.0, 0.0)])];
         let mut dots = layer("dots", Colour::BLACK);
         dots.dots.push(Dots {
@@ -395,6 +280,10 @@ mod tests {
         <g opacity="0.502">
         <g fill="none" stroke="#ff0010" stroke-linecap="round" stroke-linejoin="round" stroke-width="0.1">
         <path d="M0 0l1 0.5l1-0.5z"/>
+        <path d="M0 0c1 0.5 2-0.5 3 0"/>
+        </g>
+        <g fill="#ff0010">
+        <path d="M0 4.75l3 0.25l-3 0.25z"/>
         </g>
         </g>
         </g>
@@ -448,8 +337,9 @@ mod tests {
         }
         let mut found = Vec::new();
         paths(tree.root(), &mut found);
-        // The paper, two tiles, the closed stroke, the area and the dots.
-        assert_eq!(found, [(0.0, true), (0.25, true), (0.25, true), (0.1, true), (0.0, true), (1.0, true)]);
+        // The paper, two tiles, the closed stroke, the curve, the taper, the area and the dots.
+        let wanted = [0.0, 0.25, 0.25, 0.1, 0.1, 0.0, 0.0, 1.0].map(|width| (width, true));
+        assert_eq!(found, wanted);
     }
 
     /// What another program's reader and stroker make of a picture.
@@ -541,10 +431,14 @@ mod tests {
         let count = |text: &str| text.matches("<path").count();
         assert_eq!(count(&text_of(&few, None)), MANY);
         let shared = text_of(&many, None);
-        // Each of the five kinds of mark may leave one path that is not full.
-        assert!(count(&shared) <= MANY / TOGETHER + 5, "{}", count(&shared));
-        // No mark is lost: a tile has ten subpaths, a longer stroke or area one.
-        assert_eq!(shared.matches('M').count(), (MANY + 1) / 5 * 32 + 10);
+        // Each of the eight kinds of mark may leave one path that is not full.
+        assert!(count(&shared) <= MANY / TOGETHER + 8, "{}", count(&shared));
+        // No mark is lost: a tile has ten subpaths, a longer stroke or area one. Joins of tapers are circles of four
+        // curves.
+        let rings =
+            |layer: &Layer| layer.tapers.iter().map(|(spine, widths)| outline(spine, widths).len()).sum::<usize>();
+        let tapers: usize = many.layers.iter().map(rings).sum();
+        assert_eq!(shared.matches('M').count() - tapers, (MANY + 1) / 7 * 42 + 20);
         assert!(roxmltree::Document::parse(&shared).is_ok());
     }
 
@@ -554,7 +448,7 @@ mod tests {
         let mut back = square;
         back.reverse();
         let areas = [vec![ring(&square)], vec![ring(&back)], vec![ring(&square), ring(&back)]];
-        let text = String::from_utf8(portion_text(&area_pieces(&areas, 2))).unwrap();
+        let text = String::from_utf8(pieces_text(&area_pieces(&areas, 2))).unwrap();
         assert_eq!(
             text,
             "<path fill-rule=\"nonzero\" d=\"M0 0h1v1h-1zM0 0h1v1h-1z\"/>\n\

@@ -154,6 +154,9 @@ codes! {
     Seam "seam" "A field does not repeat"
         "On a canvas that repeats a field should have the same values at opposite borders, as noise has, or tone jumps where \
          copies meet. Strokes continue all the same."
+    Tiling "tiling" "Cells need a placement that is a tiling"
+        "`cell(...)` draws the cells of a tiling and `link: edges` joins those that share an edge. `grid`, `hex`, \
+         `triangles`, `penrose` and `pinwheel` are tilings. Sites of other placements get cells with `voronoi(...)`."
     NoTiles "no-tiles" "A paint draws nothing"
         "The placement put no tile on the region, which may be smaller than the distance between sites; or there are \
          tiles, but nothing of their fill is left: strokes are shorter than `shortest`, dots do not fit, or later tiles \

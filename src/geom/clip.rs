@@ -123,6 +123,12 @@ impl Ranges {
         }
     }
 
+    /// Holds these ranges from now on, which ascend and lie apart.
+    pub fn set(&mut self, ranges: &[(f64, f64)]) {
+        self.list.clear();
+        self.list.extend_from_slice(ranges);
+    }
+
     /// The ranges.
     #[must_use]
     pub fn as_slice(&self) -> &[(f64, f64)] {

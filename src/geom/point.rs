@@ -90,6 +90,13 @@ impl Vec2 {
     pub fn length(self) -> f64 {
         self.length_squared().sqrt()
     }
+
+    /// The vector of length 1 in its direction; none where it has no length.
+    #[must_use]
+    pub fn unit(self) -> Option<Self> {
+        let length = self.length();
+        (length > 0.0).then(|| self * (1.0 / length))
+    }
 }
 
 impl Add<Vec2> for Point {

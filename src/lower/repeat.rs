@@ -2,7 +2,7 @@
 
 use crate::diag::{Code, Diagnostic, grouped};
 use crate::field::Field;
-use crate::geom::{Angle, Length, Period, Point, Rect, whole_steps};
+use crate::geom::{Angle, Length, Period, Point, Rect, ring_bounds, whole_steps};
 use crate::region::{FillRule, Operation, Region};
 use crate::scene::{Amount, AngleRule, GridSize, Placement, Shape, Tone};
 use crate::span::Span;
@@ -50,9 +50,9 @@ pub(super) fn folded(cx: &mut Cx<'_, '_>, period: Period, region: Region, span: 
         return None;
     }
     let rings = || region.polygons().iter().flat_map(|polygon| polygon.rings());
-    let moved = period.ways(&bounds, &page).flat_map(|way| {
-        rings().map(move |ring| ring.iter().map(|&p| p + way).collect::<Vec<Point>>())
-    });
+    let moved = period
+        .ways(&bounds, &page)
+        .flat_map(|way| rings().map(move |ring| ring.iter().map(|&p| p + way).collect::<Vec<Point>>()));
     let united = Region::try_from_rings(moved.collect(), FillRule::NonZero);
     match united.and_then(|united| united.try_combined(&whole, Operation::Intersection)) {
         Ok(folded) => Some(folded),
@@ -71,6 +71,10 @@ pub(super) fn check(
     (tone, given): (&Tone, &ToneValue),
     span: Span,
 ) {
+    if let Some(diagnostic) = aperiodic(tone) {
+        cx.report(diagnostic.note(span, "painted here"));
+        return;
+    }
     if let Some(diagnostic) = too_small(period, (tone, given)) {
         cx.report(diagnostic.note(span, "painted here"));
         return;
@@ -94,6 +98,31 @@ pub(super) fn check(
 /// A length for people.
 fn millimetres(length: Length) -> String {
     format!("{}mm", (length.to_mm() * 1e3).round() / 1e3)
+}
+
+/// The error that a tiling never repeats.
+fn aperiodic(tone: &Tone) -> Option<Diagnostic> {
+    let mut place = &tone.place;
+    while let Placement::Relaxed { placement, .. } = place {
+        place = placement;
+    }
+    let name = match place {
+        Placement::Penrose { .. } => "penrose",
+        Placement::Pinwheel { .. } => "pinwheel",
+        Placement::Poisson { .. }
+        | Placement::Uniform { .. }
+        | Placement::Grid(_)
+        | Placement::Hex { .. }
+        | Placement::Triangles { .. }
+        | Placement::Points(_)
+        | Placement::Relaxed { .. } => return None,
+    };
+    let message = format!("`{name}` never repeats, so it has no place on a canvas that does");
+    Some(
+        Diagnostic::error(Code::Repeat, tone.place_span, message).label("a tiling without a period").hint(
+            "`grid`, `hex` and `triangles` are tilings that repeat; `poisson` is irregular and goes round as well",
+        ),
+    )
 }
 
 /// The error that a side of the page is shorter than two tiles.
@@ -124,7 +153,10 @@ fn spacing(place: &Placement) -> Option<Length> {
     match place {
         Placement::Poisson { radius, .. } => Some(*radius),
         Placement::Grid(GridSize::Spacing(spacing)) | Placement::Hex { spacing } => Some(*spacing),
-        Placement::Uniform { amount: Amount::AsMany(like) } => spacing(like),
+        Placement::Triangles { edge } | Placement::Penrose { edge } | Placement::Pinwheel { edge } => Some(*edge),
+        Placement::Uniform { amount: Amount::AsMany(like) } | Placement::Relaxed { placement: like, .. } => {
+            spacing(like)
+        }
         Placement::Uniform { amount: Amount::Count { .. } | Amount::Density { .. } }
         | Placement::Grid(GridSize::Cells { .. })
         | Placement::Points(_) => None,
@@ -140,8 +172,15 @@ fn tile_size(tone: &Tone, spacing: Option<Length>) -> Option<Length> {
     };
     match &tone.shape {
         Shape::Rect { width, height, overlap, .. } => sized([*width, *height], *overlap),
-        Shape::Hexagon { size, overlap, .. } => sized([*size, None], *overlap),
-        Shape::Voronoi { .. } => None,
+        Shape::Hexagon { size, overlap, .. }
+        | Shape::Triangle { size, overlap, .. }
+        | Shape::Trapezoid { size, overlap, .. } => sized([*size, None], *overlap),
+        Shape::Stamp { outline, size, overlap, .. } => {
+            let bounds = ring_bounds(outline);
+            let drawn = Length::mm(bounds.width().max(bounds.height()));
+            sized([Some(size.unwrap_or(drawn)), None], *overlap)
+        }
+        Shape::Cell { .. } | Shape::Voronoi { .. } => None,
     }
 }
 
@@ -196,9 +235,15 @@ fn stretched(period: Period, tone: &Tone) -> Option<Diagnostic> {
             let row = *spacing * (3f64.sqrt() * 0.5);
             (*spacing, [(period.width, *spacing, 1), (period.height, row, 2)])
         }
+        Placement::Triangles { edge } => {
+            (*edge, [(period.width, *edge, 1), (period.height, *edge * (3f64.sqrt() * 0.5), 2)])
+        }
         Placement::Poisson { .. }
         | Placement::Uniform { .. }
         | Placement::Grid(GridSize::Cells { .. })
+        | Placement::Penrose { .. }
+        | Placement::Pinwheel { .. }
+        | Placement::Relaxed { .. }
         | Placement::Points(_) => return None,
     };
     let scales = steps.map(|(side, pitch, multiple)| side / pitch / whole_steps(side, pitch, multiple));
@@ -243,9 +288,13 @@ fn density(place: &Placement) -> Option<&Field> {
             density.as_ref()
         }
         Placement::Uniform { amount: Amount::Density { density, .. } } => Some(density),
+        Placement::Relaxed { placement, .. } => density(placement),
         Placement::Uniform { amount: Amount::AsMany(_) }
         | Placement::Grid(_)
         | Placement::Hex { .. }
+        | Placement::Triangles { .. }
+        | Placement::Penrose { .. }
+        | Placement::Pinwheel { .. }
         | Placement::Points(_) => None,
     }
 }
@@ -276,9 +325,8 @@ fn seam(period: Period, what: &str, field: &Field, unit: Unit, at: Span) -> Opti
         Unit::Number => {
             let places = (0..PLACES).flat_map(|row| (0..PLACES).map(move |column| (column, row)));
             let values = places.map(|(x, y)| field.at(Point::new(part(x) * page.max.x, part(y) * page.max.y)));
-            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-                (low.min(value), high.max(value))
-            });
+            let (low, high) =
+                values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
             high - low
         }
         Unit::Direction => std::f64::consts::FRAC_PI_2,

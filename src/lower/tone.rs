@@ -45,7 +45,7 @@ const PROPERTIES: [(&str, Slot); 13] = [
     ("domain", Slot::words(&["canvas", "region"])),
     ("bleed", Slot::of(Kind::Length)),
     ("shape", Slot::of(Kind::Shape)),
-    ("link", Slot::words(&["delaunay"])),
+    ("link", Slot::words(&["delaunay", "edges"])),
     ("angle", Slot::of(Kind::Angles)),
     ("fill", Slot::of(Kind::Fill)),
     ("k", Slot::of(Kind::Field)),
@@ -307,7 +307,39 @@ impl ToneValue {
 
     /// Properties that do not go together.
     fn check_pairs(&self, cx: &mut Cx<'_, '_>) -> bool {
-        let (Some(place), Some(angle)) = (self.get("place"), self.get("angle")) else { return true };
+        let Some(place) = self.get("place") else { return true };
+        // Both are looked at, so that each one's mistake is told.
+        let has_cells = self.check_cells(cx, place);
+        self.check_rows(cx, place) && has_cells
+    }
+
+    /// Cells and the edges they share need a placement that has some.
+    fn check_cells(&self, cx: &mut Cx<'_, '_>, place: &Given) -> bool {
+        let Value::Placement(placement) = &place.value else { return true };
+        if placement.is_tiling() {
+            return true;
+        }
+        let tilings = "`grid`, `hex`, `triangles`, `penrose` and `pinwheel` are tilings";
+        if let Some(Given { value: Value::Shape(shape), span, .. }) = self.get("shape")
+            && matches!(**shape, Shape::Cell { .. })
+        {
+            let diagnostic = Diagnostic::error(Code::Tiling, *span, "`cell` needs a placement that is a tiling");
+            let hint = format!("{tilings}; elsewhere `voronoi()` gives every site a cell");
+            cx.report_value(diagnostic.note(place.span, "this placement has no cells").hint(hint));
+            return false;
+        }
+        if let (Some("edges"), Some(link)) = (self.word("link"), self.get("link")) {
+            let diagnostic = Diagnostic::error(Code::Tiling, link.span, "`edges` needs a placement that is a tiling");
+            let hint = format!("{tilings}; Voronoi cells share edges just where `delaunay` links them");
+            cx.report_value(diagnostic.note(place.span, "this placement has no cells").hint(hint));
+            return false;
+        }
+        true
+    }
+
+    /// A checkerboard needs a grid.
+    fn check_rows(&self, cx: &mut Cx<'_, '_>, place: &Given) -> bool {
+        let Some(angle) = self.get("angle") else { return true };
         if let (Value::Placement(placement), Value::Angles(rule)) = (&place.value, &angle.value)
             && matches!(**rule, AngleRule::Checkerboard)
             && !matches!(**placement, Placement::Grid(_))
@@ -372,8 +404,20 @@ impl ToneValue {
                 _ if shape.is_cell() => Stack::Through,
                 _ => Stack::Cover,
             },
+            link: match self.word("link") {
+                Some("edges") => Link::Edges,
+                Some("delaunay") => Link::Delaunay,
+                _ => match shape {
+                    Shape::Cell { .. } => Link::Edges,
+                    Shape::Rect { .. }
+                    | Shape::Hexagon { .. }
+                    | Shape::Triangle { .. }
+                    | Shape::Trapezoid { .. }
+                    | Shape::Stamp { .. }
+                    | Shape::Voronoi { .. } => Link::Delaunay,
+                },
+            },
             shape,
-            link: Link::Delaunay,
             angle,
             fill: self.fill_list()?,
             k,

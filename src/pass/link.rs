@@ -21,7 +21,14 @@ pub fn link(sites: &Sites, link: Link) -> Graph {
             Some(period) => torus::delaunay(&sites.points, period, sites.spacing),
             None => delaunay(&sites.points, Ord::cmp),
         },
+        Link::Edges => shared_edges(sites),
     }
+}
+
+/// The cells of a tiling that share an edge. Lowering lets only tilings come here; sites without cells are left alone.
+fn shared_edges(sites: &Sites) -> Graph {
+    let edges = sites.tiling.as_ref().map_or(&[][..], |tiling| &tiling.edges);
+    Graph::new(sites.points.len(), edges, Vec::new())
 }
 
 /// The edges and triangles of the Delaunay triangulation.
@@ -284,7 +291,16 @@ mod tests {
 
     fn linked(points: &[Point]) -> Graph {
         let area = rect(0.0, 0.0, 1.0, 1.0);
-        link(&Sites { points: points.to_vec(), domain: area, extent: area, spacing: 1.0, cells: None, torus: None }, Link::Delaunay)
+        let sites = Sites {
+            points: points.to_vec(),
+            domain: area,
+            extent: area,
+            spacing: 1.0,
+            cells: None,
+            tiling: None,
+            torus: None,
+        };
+        link(&sites, Link::Delaunay)
     }
 
     fn placed(width: f64, height: f64, placement: Placement) -> Vec<Point> {

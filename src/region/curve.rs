@@ -3,9 +3,9 @@
 use std::f64::consts::{PI, TAU};
 
 use super::FLATTENING;
-use crate::geom::{Angle, Length, Point, Vec2};
+use crate::geom::{Angle, Cubic, Length, Point, Vec2};
 
-/// The most lines that stand for one curve; reached by curves of many metres.
+/// The most lines that stand for one arc; reached by arcs of many metres.
 const MOST_LINES: f64 = 16_384.0;
 
 /// A line of straight pieces.
@@ -41,22 +41,17 @@ impl Pen {
     /// A quadratic Bézier curve.
     pub(super) fn quadratic_to(&mut self, b: Point, c: Point) {
         let Some(&a) = self.current.last() else { return };
-        // The same curve as a cubic one.
-        self.cubic_to(a.lerp(b, 2.0 / 3.0), c.lerp(b, 2.0 / 3.0), c);
+        self.cubic(Cubic::quadratic(a, b, c));
     }
 
-    /// A cubic Bézier curve, in equal steps of its parameter: as many as Wang's formula asks for (Goldman, "Pyramid
-    /// Algorithms", 2003, section 5.6.3) to keep within the tolerance.
+    /// A cubic Bézier curve.
     pub(super) fn cubic_to(&mut self, b: Point, c: Point, d: Point) {
         let Some(&a) = self.current.last() else { return };
-        let bend = ((c - b) - (b - a)).length_squared().max(((d - c) - (c - b)).length_squared()).sqrt();
-        let count = (0.75 * bend / FLATTENING.to_mm()).sqrt().ceil().clamp(1.0, MOST_LINES);
-        for i in 1..count as u32 {
-            let t = f64::from(i) / count;
-            let (ab, bc, cd) = (a.lerp(b, t), b.lerp(c, t), c.lerp(d, t));
-            self.line_to(ab.lerp(bc, t).lerp(bc.lerp(cd, t), t));
-        }
-        self.line_to(d);
+        self.cubic(Cubic([a, b, c, d]));
+    }
+
+    fn cubic(&mut self, cubic: Cubic) {
+        cubic.flatten(FLATTENING).for_each(|p| self.line_to(p));
     }
 
     /// A piece of an ellipse, as SVG describes it (SVG 2, appendix B.2.4 and 5).

@@ -29,30 +29,9 @@ const TABLES: [(Option<Kind>, &[Signature]); 7] = [
 ];
 
 /// Names of the language that this version does not draw.
-const LATER: [&str; 23] = [
-    "arcs",
-    "cell",
-    "coloured",
-    "contour",
-    "crosses",
-    "edges",
-    "flood",
-    "flow",
-    "hand",
-    "motif",
-    "nawaami",
-    "penrose",
-    "pinwheel",
-    "relaxed",
-    "scribble",
-    "stamp",
-    "steps",
-    "stops",
-    "trapezoid",
-    "triangle",
-    "triangles",
-    "tuned",
-    "waves",
+const LATER: [&str; 14] = [
+    "arcs", "coloured", "contour", "crosses", "flood", "flow", "hand", "motif", "nawaami", "scribble", "steps",
+    "stops", "tuned", "waves",
 ];
 
 /// Whether a name belongs to the language but not to this version.

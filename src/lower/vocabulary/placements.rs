@@ -18,6 +18,12 @@ const FIELD: Slot = Slot::of(Kind::Field);
 /// The most rows, columns, candidates and tries that are sensible; tiles have a limit of their own.
 const MANY: u32 = 1_000_000;
 
+/// The most rounds of relaxation: long before, sites have all but come to rest.
+const MOST_ROUNDS: u32 = 1000;
+
+/// Rounds of relaxation after which sites look even.
+const DEFAULT_ROUNDS: u32 = 5;
+
 pub(super) const SIGNATURES: &[Signature] = &[
     Signature {
         name: "poisson",
@@ -44,6 +50,43 @@ pub(super) const SIGNATURES: &[Signature] = &[
         build: |call| {
             let spacing = call.positive("spacing", None)?;
             placement(Placement::Hex { spacing })
+        },
+    },
+    Signature {
+        name: "triangles",
+        result: Some(Kind::Placement),
+        params: &[required("edge", LENGTH)],
+        build: |call| {
+            let edge = call.positive("edge", None)?;
+            placement(Placement::Triangles { edge })
+        },
+    },
+    Signature {
+        name: "penrose",
+        result: Some(Kind::Placement),
+        params: &[required("edge", LENGTH)],
+        build: |call| {
+            let edge = call.positive("edge", None)?;
+            placement(Placement::Penrose { edge })
+        },
+    },
+    Signature {
+        name: "pinwheel",
+        result: Some(Kind::Placement),
+        params: &[required("edge", LENGTH)],
+        build: |call| {
+            let edge = call.positive("edge", None)?;
+            placement(Placement::Pinwheel { edge })
+        },
+    },
+    Signature {
+        name: "relaxed",
+        result: Some(Kind::Placement),
+        params: &[required("placement", Slot::of(Kind::Placement)), optional("rounds", NUMBER)],
+        build: |call| {
+            let rounds = call.whole("rounds", 0, MOST_ROUNDS, Some(DEFAULT_ROUNDS))?;
+            let Some(Value::Placement(inner)) = call.value("placement") else { return None };
+            placement(Placement::Relaxed { placement: Box::new((*inner).clone()), rounds })
         },
     },
     Signature {

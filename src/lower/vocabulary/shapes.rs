@@ -2,17 +2,23 @@
 
 use std::rc::Rc;
 
-use crate::geom::Length;
+use crate::geom::{BadOutline, Length, Point, simple_outline};
 use crate::scene::Shape;
 
-use super::super::call::{Call, Signature, optional};
-use super::super::convert::Slot;
+use super::super::call::{Call, Signature, optional, required};
+use super::super::convert::{Slot, coerce};
 use super::super::value::{Kind, Value};
 use crate::diag::{Code, Diagnostic};
 
 const LENGTH: Slot = Slot::of(Kind::Length);
 const NUMBER: Slot = Slot::of(Kind::Number);
 const BOOL: Slot = Slot::of(Kind::Bool);
+
+/// By how much the narrow end of a trapezoid is shorter.
+const DEFAULT_TAPER: f64 = 0.5;
+
+/// The most corners of a stamp: every tile has them all.
+const MOST_CORNERS: usize = 256;
 
 pub(super) const SIGNATURES: &[Signature] = &[
     Signature {
@@ -35,6 +41,59 @@ pub(super) const SIGNATURES: &[Signature] = &[
             let size = call.maybe_positive("size");
             let overlap = overlap(call);
             shape(Shape::Hexagon { size: size?, overlap: overlap?, upright: call.flag("upright") })
+        },
+    },
+    Signature {
+        name: "triangle",
+        result: Some(Kind::Shape),
+        params: &[optional("size", LENGTH), optional("overlap", NUMBER), optional("upright", BOOL)],
+        build: |call| {
+            let size = call.maybe_positive("size");
+            let overlap = overlap(call);
+            shape(Shape::Triangle { size: size?, overlap: overlap?, upright: call.flag("upright") })
+        },
+    },
+    Signature {
+        name: "trapezoid",
+        result: Some(Kind::Shape),
+        params: &[
+            optional("taper", NUMBER),
+            optional("size", LENGTH),
+            optional("overlap", NUMBER),
+            optional("upright", BOOL),
+        ],
+        build: |call| {
+            let taper = call.within("taper", 0.0, 1.0, DEFAULT_TAPER);
+            let size = call.maybe_positive("size");
+            let overlap = overlap(call);
+            let upright = call.flag("upright");
+            shape(Shape::Trapezoid { taper: taper?, size: size?, overlap: overlap?, upright })
+        },
+    },
+    Signature {
+        name: "stamp",
+        result: Some(Kind::Shape),
+        params: &[
+            required("points", Slot::of(Kind::List)),
+            optional("size", LENGTH),
+            optional("overlap", NUMBER),
+            optional("upright", BOOL),
+        ],
+        build: |call| {
+            let outline = outline(call);
+            let size = call.maybe_positive("size");
+            let overlap = overlap(call);
+            let upright = call.flag("upright");
+            shape(Shape::Stamp { outline: outline?, size: size?, overlap: overlap?, upright })
+        },
+    },
+    Signature {
+        name: "cell",
+        result: Some(Kind::Shape),
+        params: &[optional("inset", LENGTH)],
+        build: |call| {
+            let inset = call.not_negative("inset", Length::ZERO)?;
+            shape(Shape::Cell { inset })
         },
     },
     Signature {
@@ -74,4 +133,23 @@ fn rect(call: &mut Call<'_, '_, '_>) -> Option<Value> {
         return None;
     }
     shape(Shape::Rect { width: width.or(size), height: height.or(size), overlap, upright: call.flag("upright") })
+}
+
+/// The corners of a stamp as seen from its site.
+fn outline(call: &mut Call<'_, '_, '_>) -> Option<Vec<Point>> {
+    let Some(Value::List(members)) = call.value("points") else { return None };
+    let span = call.span_of("points");
+    if members.len() > MOST_CORNERS {
+        return call.refuse("points", format!("a stamp has at most {MOST_CORNERS} corners, not {}", members.len()));
+    }
+    let corners: Option<Vec<Point>> =
+        members.iter().map(|member| coerce(call.cx, member.clone(), Slot::of(Kind::Point), span).as_point()).collect();
+    match simple_outline(&corners?) {
+        Ok(outline) => Some(outline),
+        Err(BadOutline::FewCorners) => {
+            call.refuse("points", "a stamp needs at least three corners in different places".to_owned())
+        }
+        Err(BadOutline::Flat) => call.refuse("points", "the corners of the stamp lie on one line".to_owned()),
+        Err(BadOutline::Crossing) => call.refuse("points", "the outline of the stamp crosses itself".to_owned()),
+    }
 }

@@ -11,10 +11,10 @@ pub(crate) mod voronoi;
 use rayon::prelude::*;
 
 use crate::diag::{Code, Diagnostic};
-use crate::geom::{Period, Point, Rect, Vec2};
+use crate::geom::{Figure, Length, Period, Pieces, Point, Rect, Vec2};
 use crate::region::{FillRule, Region};
 use crate::scene::{Blend, Canvas, Edge, Paint, Shape};
-use crate::stage::{Angles, Graph, Layers, Sites, Standing, Tiles};
+use crate::stage::{Angles, Graph, Layers, Sites, Standing, Tiles, Tiling};
 use stamp::Stamp;
 use standing::Ground;
 
@@ -23,6 +23,9 @@ const CHUNK: usize = 1024;
 
 /// Values of k that leave 0 to 4 by less are rounding, not a mistake.
 const ROUNDING: f64 = 1e-9;
+
+/// Cells are convex.
+static NO_PIECES: Pieces = Pieces::NONE;
 
 /// The tiles of some neighbouring sites.
 #[derive(Default)]
@@ -80,7 +83,7 @@ pub fn cut(
             &chunk.corners[start - length..start]
         })
     });
-    Tiles::new(rings, k, layers, standing, inside)
+    Tiles::new(rings, k, layers, standing, inside).in_pieces(shaper.pieces())
 }
 
 /// The part of a paint's region that lies on the canvas: what is off the canvas is neither drawn nor measured. Where the
@@ -106,9 +109,8 @@ fn repeated(region: &Region, period: Period) -> Region {
     }
     let rings = || region.polygons().iter().flat_map(|polygon| polygon.rings());
     let ways = [-1.0, 0.0, 1.0].map(|row| [-1.0, 0.0, 1.0].map(|column| Vec2::new(column * size.x, row * size.y)));
-    let moved = ways.as_flattened().iter().flat_map(|&way| {
-        rings().map(move |ring| ring.iter().map(|&p| p + way).collect())
-    });
+    let moved =
+        ways.as_flattened().iter().flat_map(|&way| rings().map(move |ring| ring.iter().map(|&p| p + way).collect()));
     Region::from_rings(moved.collect(), FillRule::NonZero)
 }
 
@@ -121,14 +123,19 @@ fn cut_chunk(
 ) -> Chunk {
     let mut chunk = Chunk::default();
     let (mut ring, mut spare) = (Vec::new(), Vec::new());
+    let pieces = shaper.pieces();
+    let mut corners = Vec::new();
     for i in range {
         let site = sites.points[i];
         shaper.outline(i, &mut ring, &mut spare);
+        corners.clear();
+        corners.extend(pieces.corners(&ring));
+        let figure = Figure::new(&ring, pieces, &corners);
         let inside = ground.contains(site);
         chunk.inside.push(inside);
         chunk.standing.push(match paint.tone.edge {
-            Edge::Clip => ground.clip(&ring),
-            Edge::Whole => ground.whole(&ring),
+            Edge::Clip => ground.clip(figure),
+            Edge::Whole => ground.whole(figure),
             Edge::Centre if inside && !ring.is_empty() => Standing::Whole,
             Edge::Centre => Standing::Absent,
         });
@@ -177,15 +184,30 @@ fn clamped(paint: &Paint, field: &[f64], standing: &[Standing]) -> Option<Diagno
 enum Shaper<'a> {
     Stamp { stamp: Stamp, sites: &'a Sites, angles: &'a Angles },
     Cells(voronoi::Cells<'a>),
+    Tiling { tiling: Option<&'a Tiling>, inset: Length },
 }
 
 impl<'a> Shaper<'a> {
     fn new(paint: &Paint, sites: &'a Sites, graph: &'a Graph, angles: &'a Angles) -> Self {
         match &paint.tone.shape {
-            shape @ (Shape::Rect { .. } | Shape::Hexagon { .. }) => {
+            shape @ (Shape::Rect { .. }
+            | Shape::Hexagon { .. }
+            | Shape::Triangle { .. }
+            | Shape::Trapezoid { .. }
+            | Shape::Stamp { .. }) => {
                 Self::Stamp { stamp: Stamp::new(shape, &paint.tone.place, sites.spacing), sites, angles }
             }
             &Shape::Voronoi { inset, round } => Self::Cells(voronoi::Cells::new(sites, graph, inset, round)),
+            // Lowering lets only tilings come here, and placement makes their cells for this shape.
+            &Shape::Cell { inset } => Self::Tiling { tiling: sites.tiling.as_ref(), inset },
+        }
+    }
+
+    /// How outlines fall into convex pieces.
+    fn pieces(&self) -> &Pieces {
+        match self {
+            Self::Stamp { stamp, .. } => stamp.pieces(),
+            Self::Cells(_) | Self::Tiling { .. } => &NO_PIECES,
         }
     }
 
@@ -194,6 +216,13 @@ impl<'a> Shaper<'a> {
         match self {
             Self::Stamp { stamp, sites, angles } => stamp.outline(sites.points[tile], angles.0[tile], ring),
             Self::Cells(cells) => cells.outline(tile, ring, spare),
+            Self::Tiling { tiling, inset } => {
+                ring.clear();
+                ring.extend_from_slice(tiling.map_or(&[], |tiling| tiling.cell(tile)));
+                if *inset > Length::ZERO {
+                    voronoi::shrink(ring, inset.to_mm(), spare);
+                }
+            }
         }
     }
 }

@@ -1,11 +1,16 @@
 //! Stamps: outlines of one size that are set on every site, turned with the tile's angle or upright.
 
-use crate::geom::{Angle, Length, Point, Vec2};
+use crate::geom::{Angle, Length, Pieces, Point, Vec2, ring_bounds};
 use crate::scene::{Placement, Shape};
+
+/// The side of an equilateral triangle whose area is 1: 2 / ⁴√3.
+const SIDE_OF_UNIT_TRIANGLE: f64 = 1.519_671_371_303_185_2;
 
 /// An outline round the origin at angle 0, clockwise on the page.
 pub(super) struct Stamp {
     corners: Vec<Vec2>,
+    /// The convex pieces of one that is not convex.
+    pieces: Pieces,
     upright: bool,
 }
 
@@ -19,22 +24,56 @@ impl Stamp {
             None => place.default_overlap(),
         };
         let or_spacing = |size: Option<Length>| size.map_or(spacing, Length::to_mm);
+        let convex = |corners, upright| Self { corners, pieces: Pieces::NONE, upright };
         match *shape {
             Shape::Rect { width, height, overlap, upright } => {
                 let scale = scale(overlap, width.or(height).is_some());
                 let w = or_spacing(width) * scale / 2.0;
                 let h = height.map_or(or_spacing(width), Length::to_mm) * scale / 2.0;
                 let corners = vec![Vec2::new(-w, -h), Vec2::new(w, -h), Vec2::new(w, h), Vec2::new(-w, h)];
-                Self { corners, upright }
+                convex(corners, upright)
             }
             Shape::Hexagon { size, overlap, upright } => {
                 let radius = or_spacing(size) * scale(overlap, size.is_some()) / 3f64.sqrt();
                 // The first corner lies a twelfth of a turn from +x, so that a flat faces it.
                 let corners = (0..6).map(|i| Angle::degrees(30.0 + 60.0 * f64::from(i)).unit() * radius).collect();
-                Self { corners, upright }
+                convex(corners, upright)
             }
-            Shape::Voronoi { .. } => Self { corners: Vec::new(), upright: true },
+            Shape::Triangle { size, overlap, upright } => {
+                let side = size.map_or(spacing * SIDE_OF_UNIT_TRIANGLE, Length::to_mm);
+                let radius = side * scale(overlap, size.is_some()) / 3f64.sqrt();
+                // The first corner lies a quarter of a turn before +x: the base faces +y, the foot of the page.
+                let corners = (0..3).map(|i| Angle::degrees(120.0 * f64::from(i) - 90.0).unit() * radius).collect();
+                convex(corners, upright)
+            }
+            Shape::Trapezoid { taper, size, overlap, upright } => {
+                let (wide, narrow) = (1.0, 1.0 - taper);
+                // The distance of the ends is the wide end's length.
+                let scale = scale(overlap, size.is_some());
+                let size = size.map_or(spacing / f64::midpoint(wide, narrow).sqrt(), Length::to_mm) * scale;
+                let before = (wide + 2.0 * narrow) / (3.0 * (wide + narrow));
+                let (left, right) = (-before, 1.0 - before);
+                let mut corners = vec![Vec2::new(left, -wide / 2.0), Vec2::new(right, -narrow / 2.0)];
+                if narrow > 0.0 {
+                    corners.push(Vec2::new(right, narrow / 2.0));
+                }
+                corners.push(Vec2::new(left, wide / 2.0));
+                convex(corners.into_iter().map(|corner| corner * size).collect(), upright)
+            }
+            Shape::Stamp { ref outline, size, overlap, upright } => {
+                let bounds = ring_bounds(outline);
+                let own = bounds.width().max(bounds.height());
+                let factor = size.map_or(1.0, |size| size.to_mm() / own) * overlap.unwrap_or(1.0);
+                let corners = outline.iter().map(|&corner| (corner - Point::default()) * factor).collect();
+                Self { corners, pieces: Pieces::of(outline), upright }
+            }
+            Shape::Voronoi { .. } | Shape::Cell { .. } => convex(Vec::new(), true),
         }
+    }
+
+    /// How outlines fall into convex pieces.
+    pub(super) fn pieces(&self) -> &Pieces {
+        &self.pieces
     }
 
     /// Writes the outline on a site.

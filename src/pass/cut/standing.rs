@@ -1,7 +1,7 @@
 //! Where a tile lies relative to the painted region.
 
 use crate::geom::clip::convex_clearance;
-use crate::geom::{Point, Rect, ring_bounds};
+use crate::geom::{Figure, Point, Rect, ring_bounds};
 use crate::region::Region;
 use crate::scene::Paint;
 use crate::stage::Standing;
@@ -42,30 +42,33 @@ impl<'a> Ground<'a> {
     }
 
     /// The standing where strokes end at the outline.
-    pub(super) fn clip(&self, ring: &[Point]) -> Standing {
-        if ring.is_empty() {
+    pub(super) fn clip(&self, figure: Figure<'_>) -> Standing {
+        if figure.outline().is_empty() {
             return Standing::Absent;
         }
-        let bounds = ring_bounds(ring);
+        let bounds = ring_bounds(figure.outline());
         if !self.region.touches_outline(bounds.grown(self.margin)) {
             return if self.region.contains(bounds.centre()) { Standing::Whole } else { Standing::Absent };
         }
-        match self.contact(ring, &bounds) {
+        match self.contact(figure) {
             Contact::Outside => Standing::Absent,
             Contact::Inside | Contact::Crossing => Standing::Clipped,
         }
     }
 
     /// The standing where only tiles wholly inside are drawn.
-    pub(super) fn whole(&self, ring: &[Point]) -> Standing {
-        if !ring.is_empty() && self.contact(ring, &ring_bounds(ring)) == Contact::Inside {
-            Standing::Whole
-        } else {
-            Standing::Absent
-        }
+    pub(super) fn whole(&self, figure: Figure<'_>) -> Standing {
+        if self.contact(figure) == Contact::Inside { Standing::Whole } else { Standing::Absent }
     }
 
-    fn contact(&self, ring: &[Point], bounds: &Rect) -> Contact {
+    /// How a tile lies to the region: as all its pieces do. One without an outline lies outside.
+    fn contact(&self, figure: Figure<'_>) -> Contact {
+        let mut contacts = figure.pieces().map(|piece| self.convex_contact(piece, &ring_bounds(piece)));
+        let first = contacts.next().unwrap_or(Contact::Outside);
+        if contacts.all(|contact| contact == first) { first } else { Contact::Crossing }
+    }
+
+    fn convex_contact(&self, ring: &[Point], bounds: &Rect) -> Contact {
         let side = |is_inside| if is_inside { Contact::Inside } else { Contact::Outside };
         if !self.region.touches_outline(*bounds) {
             return side(self.region.contains(bounds.centre()));

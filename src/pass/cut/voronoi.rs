@@ -27,10 +27,15 @@ pub(crate) struct Cells<'a> {
 impl<'a> Cells<'a> {
     /// For the cells of these sites, each drawn in by `inset` and with corners of radius `round`.
     pub(crate) fn new(sites: &'a Sites, graph: &'a Graph, inset: Length, round: Length) -> Self {
+        Self::within(bounds(sites), sites, graph, inset, round)
+    }
+
+    /// The same, but cells end at a box that holds all sites.
+    pub(crate) fn within(bounds: Rect, sites: &'a Sites, graph: &'a Graph, inset: Length, round: Length) -> Self {
         Self {
             sites,
             graph,
-            bounds: bounds(sites),
+            bounds,
             is_single: sites.torus.is_none() && graph.edges().next().is_none(),
             inset: inset.to_mm(),
             round: round.to_mm(),
@@ -63,7 +68,7 @@ impl<'a> Cells<'a> {
 
 /// The box that cells end in: the extent of the sites, and half a spacing round the sites on its border or beyond. On a
 /// torus no cell comes as far as a period beyond the first.
-fn bounds(sites: &Sites) -> Rect {
+pub(crate) fn bounds(sites: &Sites) -> Rect {
     if let Some(period) = sites.period() {
         let size = period.area().max - Point::default();
         return Rect::new(Point::default() - size, Point::default() + size * 2.0);
@@ -75,7 +80,7 @@ fn bounds(sites: &Sites) -> Rect {
 }
 
 /// Moves every edge inwards.
-fn shrink(ring: &mut Vec<Point>, by: f64, spare: &mut Vec<Point>) {
+pub(super) fn shrink(ring: &mut Vec<Point>, by: f64, spare: &mut Vec<Point>) {
     let Some(&last) = ring.last() else { return };
     let mut a = last;
     let mut halves = Vec::with_capacity(ring.len());
@@ -156,7 +161,7 @@ mod tests {
         }
         let extent = Rect::new(Point::default(), Point::new(side as f64, side as f64));
         let graph = Graph::new(points.len(), &edges, Vec::new());
-        (Sites { points, domain: extent, extent, spacing: 1.0, cells: None, torus: None }, graph)
+        (Sites { points, domain: extent, extent, spacing: 1.0, cells: None, tiling: None, torus: None }, graph)
     }
 
     fn outline(sites: &Sites, graph: &Graph, inset: f64, round: f64, tile: usize) -> Vec<Point> {
@@ -193,7 +198,7 @@ mod tests {
     fn a_site_alone_has_the_box_and_its_duplicates_nothing() {
         let extent = Rect::new(Point::default(), Point::new(2.0, 2.0));
         let points = vec![Point::new(1.0, 1.0); 2];
-        let sites = Sites { points, domain: extent, extent, spacing: 1.0, cells: None, torus: None };
+        let sites = Sites { points, domain: extent, extent, spacing: 1.0, cells: None, tiling: None, torus: None };
         let graph = Graph::new(2, &[], Vec::new());
         assert!((ring_area(&outline(&sites, &graph, 0.0, 0.0, 0)) - 4.0).abs() < 1e-12);
         assert!(outline(&sites, &graph, 0.0, 0.0, 1).is_empty());
@@ -203,7 +208,7 @@ mod tests {
     fn sites_on_the_border_have_whole_cells() {
         let extent = Rect::new(Point::default(), Point::new(1.0, 1.0));
         let points = vec![Point::new(0.0, 0.0), Point::new(1.0, 0.0)];
-        let sites = Sites { points, domain: extent, extent, spacing: 1.0, cells: None, torus: None };
+        let sites = Sites { points, domain: extent, extent, spacing: 1.0, cells: None, tiling: None, torus: None };
         let graph = Graph::new(2, &[[0, 1]], Vec::new());
         let ring = outline(&sites, &graph, 0.0, 0.0, 0);
         assert!((ring_area(&ring) - 1.5).abs() < 1e-12);

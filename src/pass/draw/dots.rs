@@ -1,6 +1,6 @@
 //! Stipple: dots along the hatch lines, each drawn whole or not at all.
 
-use crate::geom::clip::{TOLERANCE, convex_clearance};
+use crate::geom::clip::TOLERANCE;
 use crate::geom::{Length, Point};
 use crate::scene::{Blend, Hatch};
 
@@ -47,14 +47,19 @@ pub(super) fn draw(
         if !is_drawn(i, layer.share) {
             continue;
         }
-        let Some(span) = scratch.area.span(v) else { continue };
-        let row = along.over(inner(span));
-        job.budget.work(row.count() * cost as f64)?;
+        scratch.area.ranges(v, &mut scratch.others);
+        if scratch.others.is_empty() {
+            continue;
+        }
         let start = out.dots.len();
-        for (_, u) in row.places() {
-            let centre = layer.frame.page(u, v);
-            if is_free(job, layer, centre, radius, scratch)? {
-                out.dots.push(centre);
+        for span in 0..scratch.others.len() {
+            let row = along.over(inner(scratch.others[span]));
+            job.budget.work(row.count() * cost as f64)?;
+            for (_, u) in row.places() {
+                let centre = layer.frame.page(u, v);
+                if is_free(job, layer, centre, radius, scratch)? {
+                    out.dots.push(centre);
+                }
             }
         }
         if is_backwards {
@@ -99,7 +104,7 @@ fn is_free(
     scratch: &mut Scratch,
 ) -> Result<bool, Exceeded> {
     let least = radius - TOLERANCE;
-    if convex_clearance(layer.area, centre) < least {
+    if layer.area.clearance(centre) < least {
         return Ok(false);
     }
     if job.paint.tone.blend == Blend::Contour && job.paint.tone.k.at(centre) < f64::from(layer.number) - 0.5 {
@@ -108,7 +113,7 @@ fn is_free(
     let is_cover = |&cover: &u32| {
         let reach = job.nearby.radius(cover as usize) + radius;
         job.sites.points[cover as usize].distance_squared(centre) < reach * reach
-            && convex_clearance(job.nearby.outline(cover), centre) > -least
+            && job.nearby.figure(cover).clearance(centre) > -least
     };
     let found = scratch.covers.iter().position(is_cover);
     let looks = found.map_or(scratch.covers.len(), |at| at + 1);

@@ -2,16 +2,18 @@
 //!
 //! A fill of its own runs over the whole region, its lines at the exact pitch and measured from the middle of the page, and
 //! is left out under the tiles. Where the page repeats, lines take the direction and the pitch next to these that go round,
-//! and run on a little beyond the borders. `nearest` continues the pattern of every tile over its Voronoi cell. Both end at the
-//! region's outline whatever the tiles do there.
+//! and run on a little beyond the borders. `nearest` continues the pattern of every tile over its Voronoi cell, or of a
+//! tiling over the cell that the tile was drawn in from. Both end at the region's outline whatever the tiles do there.
 
 use rayon::prelude::*;
 
 use crate::geom::clip::{Frame, Profile, convex_clearance};
 use crate::geom::{Angle, Length, Point, Vec2, ring_bounds};
 use crate::pass::cut::voronoi::Cells;
+use crate::pass::link;
 use crate::region::{FillRule, Region};
-use crate::scene::{Canvas, Fill, FillKind, Ground, Hatch};
+use crate::scene::{Canvas, Fill, FillKind, Ground, Hatch, Link, Paint, Shape};
+use crate::stage::{Graph, Sites, Tiling};
 
 use super::budget::{BANK, DOT, Exceeded, LINE, PROFILE};
 use super::dashes::Dashes;
@@ -39,7 +41,8 @@ pub(super) fn draw(job: &Job<'_>, canvas: &Canvas) -> Result<Vec<Vec<Batch>>, Ex
 
 /// Hatches the gaps as the nearest tile is hatched. Tiles that are left out at the region's edge have gaps too.
 fn nearest(job: &Job<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
-    let cells = Cells::new(job.sites, job.graph, Length::ZERO, Length::ZERO);
+    let delaunay = delaunay(job.paint, job.sites);
+    let source = Source::new(job.paint, job.sites, delaunay.as_ref().unwrap_or(job.graph));
     let pens = job.paint.tone.fill.iter().filter_map(|fill| fill.kind.hatch());
     let margin = pens.map(|hatch| hatch.pen.to_mm() / 2.0).fold(0.0, f64::max);
     job.in_chunks(|scratch, tile, out| {
@@ -48,8 +51,11 @@ fn nearest(job: &Job<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
             return Ok(());
         }
         let (mut cell, mut spare) = (Vec::new(), Vec::new());
-        cells.outline(tile, &mut cell, &mut spare);
-        let is_gapless = job.tiles.is_drawn(tile) && cell.iter().all(|&p| convex_clearance(outline, p) >= 0.0);
+        source.outline(tile, &mut cell, &mut spare);
+        // Of an outline that is not convex corners alone do not tell.
+        let is_gapless = job.tiles.is_drawn(tile)
+            && job.tiles.figure(tile).is_convex()
+            && cell.iter().all(|&p| convex_clearance(outline, p) >= 0.0);
         let contact = job.bank.standing(ring_bounds(&cell).grown(margin));
         if is_gapless || contact == Contact::Outside {
             return Ok(());
@@ -61,6 +67,53 @@ fn nearest(job: &Job<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
         job.nearby.near(site, reach, |other| scratch.covers.push(other));
         job.draw_layers(&Piece { tile, beyond: Some(&cell), is_clipped: contact == Contact::Crossing }, scratch, out)
     })
+}
+
+/// The links that bound Voronoi cells, where those of the tiles are others: cells that share edges are not all of them.
+pub(super) fn delaunay(paint: &Paint, sites: &Sites) -> Option<Graph> {
+    match paint.tone.link {
+        Link::Delaunay => None,
+        Link::Edges => tiling(paint, sites).is_none().then(|| link::link(&sites.without_images(), Link::Delaunay)),
+    }
+}
+
+/// The tiling whose cells the tiles were drawn in from, if they were.
+fn tiling<'a>(paint: &Paint, sites: &'a Sites) -> Option<&'a Tiling> {
+    match paint.tone.shape {
+        Shape::Cell { .. } => sites.tiling.as_ref(),
+        Shape::Rect { .. }
+        | Shape::Hexagon { .. }
+        | Shape::Triangle { .. }
+        | Shape::Trapezoid { .. }
+        | Shape::Stamp { .. }
+        | Shape::Voronoi { .. } => None,
+    }
+}
+
+/// The area that is nearest to each tile.
+pub(super) enum Source<'a> {
+    Tiling(&'a Tiling),
+    Cells(Cells<'a>),
+}
+
+impl<'a> Source<'a> {
+    pub(super) fn new(paint: &Paint, sites: &'a Sites, graph: &'a Graph) -> Self {
+        match tiling(paint, sites) {
+            Some(tiling) => Self::Tiling(tiling),
+            None => Self::Cells(Cells::new(sites, graph, Length::ZERO, Length::ZERO)),
+        }
+    }
+
+    /// Writes the area of a tile that is no image.
+    pub(super) fn outline(&self, tile: usize, ring: &mut Vec<Point>, spare: &mut Vec<Point>) {
+        match self {
+            Self::Tiling(tiling) => {
+                ring.clear();
+                ring.extend_from_slice(tiling.cell(tile));
+            }
+            Self::Cells(cells) => cells.outline(tile, ring, spare),
+        }
+    }
 }
 
 /// Draws one fill over all that is left of the region.
@@ -228,7 +281,7 @@ impl Plane<'_> {
         self.job.budget.look(&mut scratch.looks, self.job.nearby.candidates(centre, radius))?;
         let mut is_free = true;
         self.job.nearby.near(centre, radius, |tile| {
-            is_free = is_free && convex_clearance(self.job.nearby.outline(tile), centre) <= -radius;
+            is_free = is_free && self.job.nearby.figure(tile).clearance(centre) <= -radius;
         });
         Ok(is_free)
     }
@@ -261,10 +314,10 @@ impl Plane<'_> {
             if high < first.1 || low > last.1 {
                 continue;
             }
-            scratch.area.set(self.job.nearby.outline(tile), &self.frame);
+            scratch.area.set(self.job.nearby.figure(tile), &self.frame);
             let start = band.partition_point(|line| line.1 < low);
             for (line, hidden) in band.iter().zip(&mut hidden).skip(start).take_while(|(line, _)| line.1 <= high) {
-                hidden.extend(scratch.area.span(line.1));
+                scratch.area.spans(line.1, |span| hidden.push(span));
                 scratch.looks += 1;
             }
             self.job.budget.look(&mut scratch.looks, PROFILE)?;

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::geom::clip::{Frame, Profile, Ranges};
-use crate::geom::{Angle, Point, Vec2};
+use crate::geom::{Angle, Figure, Point, Vec2};
 use crate::scene::{FillKind, Paint, Stack};
 use crate::stage::{Angles, Graph, Sites, Standing, Tiles};
 
@@ -11,6 +11,7 @@ use super::budget::{Budget, Exceeded, PROFILE};
 use super::edge::{self, Bank};
 use super::nearby::Nearby;
 use super::palette::{Batch, Palette};
+use super::silhouette::Silhouette;
 use super::{dashes, dots, lines, solid};
 
 /// Tiles that one thread draws at a time.
@@ -39,9 +40,9 @@ pub(super) struct Scratch {
     /// The outline that lines are measured on.
     pub(super) whole: Profile,
     /// The outline they are drawn in.
-    pub(super) area: Profile,
-    /// Profiles of the covers; the list may be longer than they are many.
-    pub(super) shadows: Vec<Profile>,
+    pub(super) area: Silhouette,
+    /// Silhouettes of the covers; the list may be longer than they are many.
+    pub(super) shadows: Vec<Silhouette>,
     /// What is left of a line.
     pub(super) ranges: Ranges,
     /// Other ranges along it.
@@ -62,7 +63,7 @@ pub(super) struct Layer<'a> {
     /// The tile's outline, over which lines are spread.
     pub(super) outline: &'a [Point],
     /// What is drawn in: the outline, or where the tile's pattern is continued, an area beyond it.
-    pub(super) area: &'a [Point],
+    pub(super) area: Figure<'a>,
     /// Whether the pattern is continued.
     pub(super) is_continued: bool,
     /// Whether the region's outline comes near.
@@ -72,7 +73,7 @@ pub(super) struct Layer<'a> {
 /// A tile, or an area that is hatched as one.
 pub(super) struct Piece<'a> {
     pub(super) tile: usize,
-    /// Where the tile's pattern is continued, if not in the tile itself.
+    /// The convex area where the tile's pattern is continued, if not in the tile itself.
     pub(super) beyond: Option<&'a [Point]>,
     /// Whether the region's outline comes near.
     pub(super) is_clipped: bool,
@@ -133,7 +134,7 @@ impl Job<'_> {
         out: &mut [Batch],
     ) -> Result<(), Exceeded> {
         let layers = self.tiles.layers[piece.tile];
-        let outline = self.tiles.outline(piece.tile);
+        let figure = self.tiles.figure(piece.tile);
         let fills = &self.paint.tone.fill;
         let mut solid_slots = [None; 4];
         for number in 1..=(layers.full + u8::from(layers.part > 0.0)).min(4) {
@@ -145,8 +146,8 @@ impl Job<'_> {
                 number,
                 share: if number <= layers.full { 1.0 } else { layers.part },
                 frame: Frame::new(self.sites.points[piece.tile], direction(self.angles.0[piece.tile], turn)),
-                outline,
-                area: piece.beyond.unwrap_or(outline),
+                outline: figure.outline(),
+                area: piece.beyond.map_or(figure, Figure::convex),
                 is_continued: piece.beyond.is_some(),
                 is_clipped: piece.is_clipped,
             };

@@ -6,13 +6,14 @@
 use rayon::prelude::*;
 
 use crate::drawing::{Dots, Layer, Strokes};
-use crate::geom::clip::{Frame, Profile, Ranges, TOLERANCE, convex_clearance};
+use crate::geom::clip::{Frame, Ranges, TOLERANCE};
 use crate::geom::{Point, Vec2, ring_bounds};
 use crate::region::{FillRule, Region};
 use crate::scene::{Cap, Edge, Paint};
 use crate::stage::{Sites, Standing, Tiles};
 
 use super::nearby::Nearby;
+use super::silhouette::Silhouette;
 
 /// Bundles that one thread cuts at a time.
 const CHUNK: usize = 256;
@@ -31,7 +32,7 @@ pub(super) struct Stencil<'a> {
 /// Memory that is used again for every stroke.
 #[derive(Default)]
 struct Scratch {
-    profile: Profile,
+    silhouette: Silhouette,
     ranges: Ranges,
     inside: Ranges,
     spans: Vec<(f64, f64)>,
@@ -116,30 +117,31 @@ impl<'a> Stencil<'a> {
             return false;
         }
         let frame = Frame::new(a, (b - a) * (1.0 / length));
-        let Scratch { profile, ranges, inside, spans } = scratch;
+        let Scratch { silhouette, ranges, inside, spans } = scratch;
         let mut is_cut = false;
         let mut has_spans = false;
         self.nearby.along(a, b, |tile| {
-            profile.set(self.nearby.outline(tile), &frame);
-            let Some((start, end)) = profile.span(0.0) else { return };
-            if end <= 0.0 || start >= length {
-                return;
-            }
-            inside.reset(start, end);
-            if let (Some(region), Standing::Clipped) = (self.region, self.tiles.standing[tile as usize]) {
-                if !has_spans {
-                    spans.clear();
-                    region.clip_line(a, b, spans);
-                    spans.iter_mut().for_each(|span| *span = (span.0 * length, span.1 * length));
-                    has_spans = true;
+            silhouette.set(self.nearby.figure(tile), &frame);
+            silhouette.spans(0.0, |(start, end)| {
+                if end <= 0.0 || start >= length {
+                    return;
                 }
-                inside.intersect(spans);
-            }
-            for &(start, end) in inside.as_slice() {
-                // Round caps end where the tile begins.
-                ranges.subtract(start - cap, end + cap);
-                is_cut = true;
-            }
+                inside.reset(start, end);
+                if let (Some(region), Standing::Clipped) = (self.region, self.tiles.standing[tile as usize]) {
+                    if !has_spans {
+                        spans.clear();
+                        region.clip_line(a, b, spans);
+                        spans.iter_mut().for_each(|span| *span = (span.0 * length, span.1 * length));
+                        has_spans = true;
+                    }
+                    inside.intersect(spans);
+                }
+                for &(start, end) in inside.as_slice() {
+                    // Round caps end where the tile begins.
+                    ranges.subtract(start - cap, end + cap);
+                    is_cut = true;
+                }
+            });
         });
         is_cut
     }
@@ -207,7 +209,7 @@ impl<'a> Stencil<'a> {
     fn touches(&self, centre: Point, radius: f64) -> bool {
         let mut is_touched = false;
         self.nearby.near(centre, radius, |tile| {
-            let reaches = || convex_clearance(self.nearby.outline(tile), centre) > TOLERANCE - radius;
+            let reaches = || self.nearby.figure(tile).clearance(centre) > TOLERANCE - radius;
             let standing = self.tiles.standing[tile as usize];
             let is_there = || match (self.region, standing) {
                 (Some(region), Standing::Clipped) => region.signed_distance(centre) > TOLERANCE - radius,
@@ -225,7 +227,7 @@ impl<'a> Stencil<'a> {
         self.nearby.near(bounds.centre(), reach, |tile| {
             let is_clipped = self.tiles.standing[tile as usize] == Standing::Clipped;
             let list = if is_clipped { &mut clipped } else { &mut whole };
-            list.push(self.nearby.outline(tile).to_vec());
+            list.push(self.nearby.figure(tile).outline().to_vec());
         });
         if whole.is_empty() && clipped.is_empty() {
             return vec![area.to_vec()];

@@ -5,7 +5,7 @@
 
 use crate::field::Node;
 use crate::geom::Length;
-use crate::geom::clip::{Frame, Profile, TOLERANCE};
+use crate::geom::clip::{Frame, TOLERANCE};
 use crate::scene::{Blend, Hatch};
 
 use super::budget::{BANK, Exceeded, LINE, SAMPLE};
@@ -13,6 +13,7 @@ use super::dashes::Dashes;
 use super::job::{Job, Layer, Scratch};
 use super::lattice::{Lattice, is_drawn};
 use super::palette::Batch;
+use super::silhouette::Silhouette;
 
 /// Halvings in the search for the place where a layer ends along the field: from a tenth of a millimetre to a millionth.
 const HALVINGS: usize = 24;
@@ -34,17 +35,16 @@ pub(super) fn draw(
         if !is_drawn(i, layer.share) {
             continue;
         }
-        let Some((start, end)) = scratch.area.span(v) else { continue };
-        scratch.ranges.reset(start, end);
+        scratch.area.ranges(v, &mut scratch.others);
+        scratch.ranges.set(&scratch.others);
         let mut looks = 0;
         for shadow in &scratch.shadows[..scratch.covers.len()] {
             if scratch.ranges.is_empty() {
                 break;
             }
             looks += 1;
-            if let Some((start, end)) = shadow.span(v) {
-                scratch.ranges.subtract(start, end);
-            }
+            let ranges = &mut scratch.ranges;
+            shadow.spans(v, |(start, end)| ranges.subtract(start, end));
         }
         job.budget.look(&mut scratch.looks, looks)?;
         contour(job, layer, v, hatch.pitch, scratch)?;
@@ -76,14 +76,14 @@ pub(super) fn spread(job: &Job<'_>, layer: &Layer<'_>, hatch: &Hatch, scratch: &
     if layer.is_continued { lattice.over(scratch.area.across()) } else { lattice }
 }
 
-/// Takes the profiles of the tiles that hide parts of this one.
+/// Takes the silhouettes of the tiles that hide parts of this one.
 fn set_shadows(job: &Job<'_>, layer: &Layer<'_>, scratch: &mut Scratch) {
     let count = scratch.covers.len();
     if scratch.shadows.len() < count {
-        scratch.shadows.resize_with(count, Profile::default);
+        scratch.shadows.resize_with(count, Silhouette::default);
     }
     for (shadow, &cover) in scratch.shadows.iter_mut().zip(&scratch.covers) {
-        shadow.set(job.nearby.outline(cover), &layer.frame);
+        shadow.set(job.nearby.figure(cover), &layer.frame);
     }
 }
 

@@ -18,6 +18,7 @@ mod lattice;
 mod lines;
 mod nearby;
 mod palette;
+mod silhouette;
 mod solid;
 mod torus;
 mod weave;

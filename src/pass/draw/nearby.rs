@@ -3,7 +3,7 @@
 //! Points are sorted into the cells of a square grid that has about as many cells as there are points, in two flat lists,
 //! so that a million tiles cost a few bytes each.
 
-use crate::geom::{Point, Rect};
+use crate::geom::{Figure, Point, Rect};
 use crate::stage::{Sites, Tiles};
 
 /// Most cells along one side of a grid, so that points strung along a line cannot ask for many empty ones.
@@ -120,9 +120,9 @@ impl<'a> Nearby<'a> {
         self.radii[tile]
     }
 
-    /// A tile's outline.
-    pub(super) fn outline(&self, tile: u32) -> &'a [Point] {
-        self.tiles.outline(tile as usize)
+    /// A tile's outline with its pieces.
+    pub(super) fn figure(&self, tile: u32) -> Figure<'a> {
+        self.tiles.figure(tile as usize)
     }
 
     /// How many tiles [`Self::near`] looks at.

@@ -1,7 +1,6 @@
 //! Tiles inked all over: what is seen of them, as outlines.
 
 use crate::field::{Field, Node};
-use crate::geom::clip::convex_overlap;
 use crate::geom::{Point, Rect, ring_bounds};
 use crate::region::{FillRule, Region};
 use crate::scene::Blend;
@@ -20,21 +19,21 @@ pub(super) fn draw(job: &Job<'_>, layer: &Layer<'_>, covers: &[u32], out: &mut B
     if layer.share < HALF {
         return;
     }
-    let field = &job.paint.tone.k;
+    let (field, area) = (&job.paint.tone.k, layer.area.outline());
     let has_contour = job.paint.tone.blend == Blend::Contour && !matches!(field.node(), Node::Constant(_));
     let hidden: Vec<Vec<Point>> = covers
         .iter()
-        .map(|&cover| job.nearby.outline(cover))
-        .filter(|outline| convex_overlap(outline, layer.area))
-        .map(<[Point]>::to_vec)
+        .map(|&cover| job.nearby.figure(cover))
+        .filter(|figure| figure.overlaps(layer.area))
+        .map(|figure| figure.outline().to_vec())
         .collect();
     if hidden.is_empty() && !layer.is_clipped && !has_contour {
-        if layer.area.len() > 2 {
-            out.areas.push(vec![layer.area.to_vec()]);
+        if area.len() > 2 {
+            out.areas.push(vec![area.to_vec()]);
         }
         return;
     }
-    let mut seen = Region::from_rings(vec![layer.area.to_vec()], FillRule::NonZero);
+    let mut seen = Region::from_rings(vec![area.to_vec()], FillRule::NonZero);
     if !hidden.is_empty() {
         seen = seen.difference(&Region::from_rings(hidden, FillRule::NonZero));
     }
@@ -42,7 +41,7 @@ pub(super) fn draw(job: &Job<'_>, layer: &Layer<'_>, covers: &[u32], out: &mut B
         seen = seen.intersection(job.bank.region());
     }
     if has_contour {
-        seen = seen.intersection(&above(field, f64::from(layer.number) - 0.5, &ring_bounds(layer.area)));
+        seen = seen.intersection(&above(field, f64::from(layer.number) - 0.5, &ring_bounds(area)));
     }
     push(&seen, out);
 }

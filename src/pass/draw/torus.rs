@@ -8,12 +8,11 @@ use rayon::prelude::*;
 
 use crate::drawing::{Curves, Dots, Layer, Strokes, Tapers};
 use crate::geom::{Angle, Length, Period, Point, Rect, Vec2, ring_bounds};
-use crate::pass::cut::voronoi::Cells;
 use crate::scene::{Ground, Paint};
 use crate::stage::{Angles, Graph, Sites, Tiles, Torus};
 
 use super::budget::Exceeded;
-use super::{Stages, solid};
+use super::{Stages, ground, solid};
 
 /// How far straight strokes run on beyond a border, in pens: far enough that what a border leaves of a stroke is never
 /// taken for a crumb when a later paint cuts it.
@@ -39,7 +38,8 @@ impl<'a> Unrolled<'a> {
         let area = period.area().grown(reach + widest(stages));
         let mut images: Vec<(u32, Vec2)> = Vec::new();
         for (site, &p) in (0u32..).zip(&stages.sites.points) {
-            images.extend(period.ways(&Rect::new(p, p), &area).filter(|way| *way != Vec2::default()).map(|w| (site, w)));
+            images
+                .extend(period.ways(&Rect::new(p, p), &area).filter(|way| *way != Vec2::default()).map(|w| (site, w)));
         }
         let mut sites = stages.sites.clone();
         sites.points.extend(images.iter().map(|&(site, way)| stages.sites.points[site as usize] + way));
@@ -68,11 +68,12 @@ fn radius(ring: &[Point], site: Point) -> f64 {
 pub(super) fn reach(paint: &Paint, stages: &Stages<'_>) -> f64 {
     let ground = match &paint.tone.ground {
         None => 0.0,
-        Some(Ground::Fill { fill, .. }) => super::ground::beyond(fill),
+        Some(Ground::Fill { fill, .. }) => ground::beyond(fill),
         Some(Ground::Nearest) => {
-            let cells = Cells::new(stages.sites, stages.graph, Length::ZERO, Length::ZERO);
+            let delaunay = ground::delaunay(paint, stages.sites);
+            let source = ground::Source::new(paint, stages.sites, delaunay.as_ref().unwrap_or(stages.graph));
             let reach = |(ring, spare): &mut (Vec<Point>, Vec<Point>), tile: usize| {
-                cells.outline(tile, ring, spare);
+                source.outline(tile, ring, spare);
                 radius(ring, stages.sites.points[tile])
             };
             let tiles = (0..stages.sites.own()).into_par_iter();
@@ -264,7 +265,8 @@ fn touches(bounds: &Rect, area: &Rect) -> bool {
 fn trimmed(a: Point, b: Point, area: &Rect) -> Option<[Point; 2]> {
     let way = b - a;
     let (mut start, mut end) = (0.0f64, 1.0f64);
-    for (step, low, high) in [(way.x, area.min.x - a.x, area.max.x - a.x), (way.y, area.min.y - a.y, area.max.y - a.y)] {
+    for (step, low, high) in [(way.x, area.min.x - a.x, area.max.x - a.x), (way.y, area.min.y - a.y, area.max.y - a.y)]
+    {
         if step == 0.0 {
             if low > 0.0 || high < 0.0 {
                 return None;
@@ -324,7 +326,8 @@ mod tests {
     fn strokes_enter_where_they_leave() {
         let mut one = layer();
         let mut strokes = Strokes::new(Length::mm(0.2), Cap::Butt);
-        strokes.lines = vec![[Point::new(8.0, 3.0), Point::new(13.0, 3.0)], [Point::new(8.0, 4.0), Point::new(9.0, 4.0)]];
+        strokes.lines =
+            vec![[Point::new(8.0, 3.0), Point::new(13.0, 3.0)], [Point::new(8.0, 4.0), Point::new(9.0, 4.0)]];
         strokes.bundle_ends = vec![2];
         one.strokes.push(strokes);
         let found = wrapped(one);

@@ -148,9 +148,7 @@ mod tests {
         };
         let star = |&p: &Point| {
             let others = || cover.points.iter().copied().filter(|&q| q != p);
-            let is_linked = |&q: &Point| {
-                others().any(|r| (q - p).cross(r - p) > 1e-9 && is_empty(p, q, r))
-            };
+            let is_linked = |&q: &Point| others().any(|r| (q - p).cross(r - p) > 1e-9 && is_empty(p, q, r));
             let mut star: Vec<Point> = others().filter(is_linked).collect();
             star.sort_by(|a, b| a.y.total_cmp(&b.y).then(a.x.total_cmp(&b.x)));
             star

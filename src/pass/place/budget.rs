@@ -10,7 +10,11 @@ const MOST_TILES: u64 = 1 << 29;
 /// Cells of a search grid for every tile that is allowed. Lattices of cells are at most this much finer than the tiles.
 const CELLS_A_TILE: f64 = 32.0;
 
+/// Moves in rounds of relaxation for every tile that is allowed: at the limit of tiles they take some minutes.
+const MOVES_A_TILE: f64 = 32.0;
+
 /// The limit of tiles.
+#[derive(Clone, Copy)]
 pub(super) struct Budget {
     tiles: u64,
     span: Span,
@@ -42,6 +46,18 @@ impl Budget {
         Err(self.exceeded(placement, format!("`{call}` places more than {limit} tiles, which is the limit")))
     }
 
+    /// Asks for `rounds` in which all of the `tiles` are moved.
+    pub(super) fn expect_moves(&self, placement: &Placement, tiles: usize, rounds: u32) -> Result<(), Diagnostic> {
+        let (moves, most) = (tiles as f64 * f64::from(rounds), self.tiles as f64 * MOVES_A_TILE);
+        if moves <= most {
+            return Ok(());
+        }
+        let (moves, most, limit) = (grouped(rounded(moves)), grouped(most), grouped(self.tiles as f64));
+        let call = describe(placement);
+        let message = format!("`{call}` would move tiles {moves} times; a limit of {limit} tiles allows {most}");
+        Err(self.exceeded(placement, message))
+    }
+
     /// A search grid of `columns * rows` empty cells.
     pub(super) fn grid(&self, placement: &Placement, columns: f64, rows: f64) -> Result<Vec<u32>, Diagnostic> {
         let cells = columns * rows;
@@ -67,7 +83,9 @@ impl Budget {
             Placement::Uniform { amount: Amount::AsMany(_) | Amount::Density { .. } } => "use a lower density",
             Placement::Grid(GridSize::Spacing(_)) | Placement::Hex { .. } => "use a larger spacing",
             Placement::Grid(GridSize::Cells { .. }) => "use fewer columns and rows",
+            Placement::Triangles { .. } | Placement::Penrose { .. } | Placement::Pinwheel { .. } => "use a longer edge",
             Placement::Points(_) => "use fewer points",
+            Placement::Relaxed { .. } => "use fewer rounds",
         };
         let hint = if self.tiles < MOST_TILES {
             format!("`--limit tiles=N` lifts it, or {remedy}")
@@ -88,7 +106,11 @@ fn describe(placement: &Placement) -> String {
         Placement::Grid(GridSize::Spacing(spacing)) => format!("grid(spacing: {})", millimetres(spacing.to_mm())),
         Placement::Grid(GridSize::Cells { columns, rows }) => format!("grid(columns: {columns}, rows: {rows})"),
         Placement::Hex { spacing } => format!("hex(spacing: {})", millimetres(spacing.to_mm())),
+        Placement::Triangles { edge } => format!("triangles(edge: {})", millimetres(edge.to_mm())),
+        Placement::Penrose { edge } => format!("penrose(edge: {})", millimetres(edge.to_mm())),
+        Placement::Pinwheel { edge } => format!("pinwheel(edge: {})", millimetres(edge.to_mm())),
         Placement::Points(_) => "points([...])".to_owned(),
+        Placement::Relaxed { placement, rounds } => format!("relaxed({}, rounds: {rounds})", describe(placement)),
     }
 }
 

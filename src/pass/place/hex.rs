@@ -1,16 +1,15 @@
 //! The hexagonal lattice: rows of sites, every other one moved by half a spacing.
 
 use crate::diag::Diagnostic;
-use crate::geom::{Length, Period, Point, whole_steps};
+use crate::geom::Point;
 use crate::scene::Placement;
-use crate::stage::Sites;
+use crate::stage::{Sites, Tiling};
 
+use super::rows::Rows;
 use super::{Ground, ON_EDGE};
 
 /// A lattice whose sites are `spacing` from their six neighbours, centred in the domain, that goes on into the bleed as
-/// far as sites lie in it; row by row.
-///
-/// On a torus it is stretched, across and down by themselves, to whole columns and an even number of rows.
+/// far as sites lie in it, or where cells are asked for as far as those touch it; row by row.
 ///
 /// Columns are counted in half spacings, even ones in even rows and odd ones in odd rows, and a coordinate is computed
 /// from its number alone: rows, and columns of one parity, are straight to the last bit.
@@ -18,44 +17,53 @@ pub(super) fn place(placement: &Placement, ground: &Ground<'_>, spacing: f64) ->
     let domain = &ground.domain;
     let extent = ground.extent(spacing);
     let centre = domain.centre();
-    if let Some(period) = ground.torus {
-        return around(placement, ground, period, spacing);
-    }
-    let (half, pitch) = (spacing * 0.5, spacing * ROW);
+    let (half, pitch) = (spacing * 0.5, spacing * (3f64.sqrt() * 0.5));
     let columns = (domain.width() / spacing).round().max(1.0);
     let rows = (domain.height() / pitch).round().max(1.0);
     // The last column that is used: an odd one as soon as there is an odd row.
     let last_column = 2.0 * (columns - 1.0) + if rows > 1.0 { 1.0 } else { 0.0 };
     let across = Axis { centre: centre.x, middle: last_column * 0.5, step: half };
     let down = Axis { centre: centre.y, middle: (rows - 1.0) * 0.5, step: pitch };
-    let columns = across.range(extent.min.x, extent.max.x);
-    let rows = down.range(extent.min.y, extent.max.y);
+    // From a site to the corners of its cell; what touches the extent only there or along a side is left out.
+    let corner = pitch * (2.0 / 3.0);
+    let reach = |far: f64| if ground.wants_cells { far - 2.0 * ON_EDGE * spacing } else { 0.0 };
+    let columns = across.range(extent.min.x, extent.max.x, reach(half));
+    let rows = down.range(extent.min.y, extent.max.y, reach(corner));
     ground.budget.expect(placement, (columns[1] - columns[0] + 1.0) * 0.5 * (rows[1] - rows[0] + 1.0))?;
-    let mut points = Vec::new();
+    let (mut points, mut tiling) = (Vec::new(), Tiling::default());
+    let mut lattice = Rows::new(rows[0] as i64, 2);
     for row in rows[0] as i64..=rows[1] as i64 {
         let y = down.at(row);
         let first = columns[0] as i64;
         let first = first + (first + row).rem_euclid(2);
-        points.extend((first..=columns[1] as i64).step_by(2).map(|column| Point::new(across.at(column), y)));
+        let start = points.len();
+        let columns = || (first..=columns[1] as i64).step_by(2);
+        points.extend(columns().map(|column| Point::new(across.at(column), y)));
+        lattice.push(first, points.len() - start);
+        if ground.wants_cells {
+            // Heights of corners belong to rows, each of which has its upper ones where the row before has its lower.
+            let (above, below) = (down.between(row - 1), down.between(row));
+            for column in columns() {
+                let [left, x, right] = [column - 1, column, column + 1].map(|column| across.at(column));
+                let ring = [
+                    (x, above[0]),
+                    (right, above[1]),
+                    (right, below[0]),
+                    (x, below[1]),
+                    (left, below[0]),
+                    (left, above[1]),
+                ];
+                tiling.push(&ring.map(|(x, y)| Point::new(x, y)));
+            }
+        }
     }
-    Ok(ground.sites(points, spacing, spacing))
-}
-
-/// From row to row, in spacings.
-const ROW: f64 = 0.866_025_403_784_438_6;
-
-/// The lattice on a torus. Its spacing is that of an even lattice with as many sites.
-fn around(placement: &Placement, ground: &Ground<'_>, period: Period, spacing: f64) -> Result<Sites, Diagnostic> {
-    let columns = whole_steps(period.width, Length::mm(spacing), 1);
-    let rows = whole_steps(period.height, Length::mm(spacing * ROW), 2);
-    ground.budget.expect(placement, columns * rows)?;
-    let (step, pitch) = (period.width.to_mm() / columns, period.height.to_mm() / rows);
-    let site = |row: u64, column: u64| {
-        let shift = if row % 2 == 0 { 0.25 } else { 0.75 };
-        Point::new((column as f64 + shift) * step, (row as f64 + 0.5) * pitch)
-    };
-    let points = (0..rows as u64).flat_map(|row| (0..columns as u64).map(move |column| site(row, column))).collect();
-    Ok(ground.sites(points, (step * pitch / ROW).sqrt(), 0.0))
+    let mut sites = ground.sites(points, spacing, spacing);
+    if ground.wants_cells {
+        let next = |row: i64, column: i64| [(row, column + 2), (row + 1, column - 1), (row + 1, column + 1)].map(Some);
+        tiling.edges = lattice.pairs(next);
+        sites.tiling = Some(tiling);
+    }
+    Ok(sites)
 }
 
 /// Equal steps along one direction, the middle of those in the domain in its centre.
@@ -70,8 +78,15 @@ impl Axis {
         self.centre + (number as f64 - self.middle) * self.step
     }
 
-    fn range(&self, min: f64, max: f64) -> [f64; 2] {
+    /// The places of corners between a row and the next: those farther up, which are the next row's points, and those
+    /// farther down.
+    fn between(&self, number: i64) -> [f64; 2] {
+        [1.0 / 3.0, 2.0 / 3.0].map(|share| self.centre + (number as f64 + share - self.middle) * self.step)
+    }
+
+    /// The first and the last number from `min` to `max` or no farther than `reach` beyond.
+    fn range(&self, min: f64, max: f64, reach: f64) -> [f64; 2] {
         let number = |x: f64| (x - self.centre) / self.step + self.middle;
-        [(number(min) - ON_EDGE).ceil(), (number(max) + ON_EDGE).floor()]
+        [(number(min - reach) - ON_EDGE).ceil(), (number(max + reach) + ON_EDGE).floor()]
     }
 }

@@ -4,16 +4,23 @@
 //! estimated before anything is allocated, so that a slip in a radius ends in a diagnostic and not in all the memory.
 //! A placement is one file here and one line in `find`.
 
+mod around;
 mod budget;
 mod grid;
 mod hex;
+mod patch;
+mod penrose;
+mod pinwheel;
 mod poisson;
+mod relaxed;
+mod rows;
+mod triangles;
 mod uniform;
 
 use crate::diag::Diagnostic;
 use crate::geom::{Period, Point, Rect};
 use crate::random::{Key, Stream};
-use crate::scene::{Amount, Canvas, Domain, GridSize, Limits, Paint, Placement};
+use crate::scene::{Amount, Canvas, Domain, GridSize, Limits, Link, Paint, Placement, Shape};
 use crate::stage::{Sites, Torus};
 use budget::Budget;
 
@@ -40,6 +47,7 @@ pub fn place(paint: &Paint, canvas: &Canvas, limits: &Limits) -> Result<Sites, D
         bleed: if torus.is_some() { Some(0.0) } else { tone.bleed.map(|bleed| bleed.to_mm()) },
         seed: paint.seed,
         name: &paint.name,
+        wants_cells: tone.link == Link::Edges || matches!(tone.shape, Shape::Cell { .. }),
         budget: Budget::new(limits.tiles, tone.place_span),
         torus,
     };
@@ -60,7 +68,11 @@ fn is_counted(placement: &Placement) -> bool {
         | Placement::Poisson { .. }
         | Placement::Grid(GridSize::Spacing(_))
         | Placement::Hex { .. }
+        | Placement::Triangles { .. }
+        | Placement::Penrose { .. }
+        | Placement::Pinwheel { .. }
         | Placement::Points(_) => false,
+        Placement::Relaxed { placement, .. } => is_counted(placement),
     }
 }
 
@@ -68,6 +80,9 @@ fn is_counted(placement: &Placement) -> bool {
 fn find(placement: &Placement, ground: &Ground<'_>) -> Result<Sites, Diagnostic> {
     if ground.domain.is_empty() && !matches!(placement, Placement::Points(_)) {
         return Ok(ground.sites(Vec::new(), FALLBACK_SPACING, 0.0));
+    }
+    if let Some(round) = ground.torus.and_then(|period| around::Round::of(placement, period)) {
+        return round.place(placement, ground, |even| find(placement, even));
     }
     match placement {
         Placement::Poisson { radius, tries, density } => {
@@ -77,6 +92,10 @@ fn find(placement: &Placement, ground: &Ground<'_>) -> Result<Sites, Diagnostic>
         Placement::Uniform { amount } => uniform::place(placement, ground, amount),
         Placement::Grid(size) => grid::place(placement, ground, *size),
         Placement::Hex { spacing } => hex::place(placement, ground, spacing.to_mm()),
+        Placement::Triangles { edge } => triangles::place(placement, ground, edge.to_mm()),
+        Placement::Penrose { edge } => penrose::place(placement, ground, edge.to_mm()),
+        Placement::Pinwheel { edge } => pinwheel::place(placement, ground, edge.to_mm()),
+        Placement::Relaxed { placement: inner, rounds } => relaxed::place(placement, ground, inner, *rounds),
         Placement::Points(points) => {
             ground.budget.expect(placement, points.len() as f64)?;
             let spacing = ground.mean_spacing(points.len());
@@ -98,6 +117,8 @@ struct Ground<'a> {
     bleed: Option<f64>,
     seed: u64,
     name: &'a str,
+    /// Whether the cells of tilings and their shared edges are asked for, not only their sites.
+    wants_cells: bool,
     budget: Budget,
     /// The period, where the domain goes on beyond its borders.
     torus: Option<Period>,
@@ -123,7 +144,15 @@ impl Ground<'_> {
 
     /// Sites without cells.
     fn sites(&self, points: Vec<Point>, spacing: f64, default_bleed: f64) -> Sites {
-        Sites { points, domain: self.domain, extent: self.extent(default_bleed), spacing, cells: None, torus: None }
+        Sites {
+            points,
+            domain: self.domain,
+            extent: self.extent(default_bleed),
+            spacing,
+            cells: None,
+            tiling: None,
+            torus: None,
+        }
     }
 }
 

@@ -308,8 +308,7 @@ impl Grid {
             (0..(2 * reach + 1).min(count)).map(move |i| (first + i) % count)
         };
         let rows = numbers(row, self.rows);
-        let cells =
-            rows.flat_map(move |row| numbers(column, self.columns).map(move |column| self.index(column, row)));
+        let cells = rows.flat_map(move |row| numbers(column, self.columns).map(move |column| self.index(column, row)));
         cells.map(|cell| self.cells[cell]).filter(|&site| site != EMPTY)
     }
 }
