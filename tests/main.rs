@@ -10,4 +10,5 @@ mod determinism;
 mod documents;
 mod examples;
 mod later;
+mod repeat;
 mod support;

@@ -251,12 +251,13 @@ fn stretched(period: Period, tone: &Tone) -> Option<Diagnostic> {
         return None;
     }
     let [across, down] = scales.map(|scale| millimetres(spacing * scale));
+    let [width, height] = steps.map(|(side, pitch, multiple)| millimetres(pitch * whole_steps(side, pitch, multiple)));
     let asked = millimetres(spacing);
     let message = format!("a spacing of {asked} does not go round the canvas a whole number of times");
     Some(
         Diagnostic::warning(Code::Stretched, tone.place_span, message)
             .label(format!("stretched to {across} across and {down} down"))
-            .hint("a canvas that is a whole number of cells wide and high stretches nothing"),
+            .hint(format!("a canvas of {width} by {height} would stretch nothing")),
     )
 }
 
