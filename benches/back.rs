@@ -33,6 +33,7 @@ fn page(strokes: usize, depth: Depth) -> Drawing {
         page: Page {
             width: Length::mm(width),
             height: Length::mm(height),
+            bleed: Length::ZERO,
             pixels: [4961, 7016],
             dpi: 600.0,
             paper: Some(Colour::WHITE),

@@ -16,13 +16,15 @@ pub struct Drawing {
     pub layers: Vec<Layer>,
 }
 
-/// The sheet.
+/// The sheet. Its top left corner is the origin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Page {
-    /// Its width.
+    /// Its width when it is trimmed.
     pub width: Length,
-    /// Its height.
+    /// Its height when it is trimmed.
     pub height: Length,
+    /// How far the drawing goes on beyond each side, to be trimmed off; not negative.
+    pub bleed: Length,
     /// Width and height of a raster.
     pub pixels: [u32; 2],
     /// Pixels per inch.

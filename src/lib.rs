@@ -161,6 +161,7 @@ fn draw(
     for (setting, item) in &items {
         let drawn = match item {
             Item::Outline(outline) => assembly.outline(outline, setting).map(|()| None),
+            Item::Ink(ink) => assembly.ink(ink, setting).map(|()| None),
             Item::Paint(paint) => PaintStages::new(paint, canvas, limits, observer, diagnostics).and_then(|stages| {
                 observer.begin(Step::Draw, &paint.name);
                 assembly.paint(paint, setting, &stages.borrow())
@@ -181,7 +182,7 @@ fn draw(
 pub fn paints(scene: &Scene) -> impl Iterator<Item = &Paint> {
     items(scene).into_iter().filter_map(|(_, item)| match item {
         Item::Paint(paint) => Some(paint),
-        Item::Outline(_) => None,
+        Item::Outline(_) | Item::Ink(_) => None,
     })
 }
 

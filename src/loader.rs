@@ -11,6 +11,12 @@ pub trait Loader: Sync {
     /// # Errors
     /// Says why the file cannot be read, or that it lies outside the root (through a link, say).
     fn load(&self, path: &str) -> Result<Arc<[u8]>, LoadError>;
+
+    /// What stands in for a standard library of the program (`std:manga`), where something does: a picture keeps the
+    /// text that it was made with.
+    fn library(&self, _name: &str) -> Option<Arc<[u8]>> {
+        None
+    }
 }
 
 /// Why a file cannot be read.

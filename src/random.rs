@@ -7,7 +7,7 @@
 use std::hash::Hasher;
 
 use rand_core::{Rng, SeedableRng};
-use siphasher::sip128::{Hasher128, SipHasher24};
+use siphasher::sip128::{Hash128, Hasher128, SipHasher24};
 
 /// One stream.
 #[derive(Debug, Clone)]
@@ -39,7 +39,21 @@ impl Key<'_> {
         self.with(Some(index as u64))
     }
 
+    /// The table of one tile.
+    #[must_use]
+    pub fn table(&self, index: usize) -> Table {
+        Table { start: self.hash(Some(index as u64)).h1 }
+    }
+
     fn with(&self, index: Option<u64>) -> Stream {
+        let hash = self.hash(index);
+        let mut seed = [0; 16];
+        seed[..8].copy_from_slice(&hash.h1.to_le_bytes());
+        seed[8..].copy_from_slice(&hash.h2.to_le_bytes());
+        Stream { generator: rand_pcg::Pcg64Mcg::from_seed(seed) }
+    }
+
+    fn hash(&self, index: Option<u64>) -> Hash128 {
         let mut hasher = SipHasher24::new();
         hasher.write(&self.seed.to_le_bytes());
         // Lengths first, so that no two pairs of texts run together into the same bytes.
@@ -50,11 +64,47 @@ impl Key<'_> {
         if let Some(index) = index {
             hasher.write(&index.to_le_bytes());
         }
-        let hash = hasher.finish128();
-        let mut seed = [0; 16];
-        seed[..8].copy_from_slice(&hash.h1.to_le_bytes());
-        seed[8..].copy_from_slice(&hash.h2.to_le_bytes());
-        Stream { generator: rand_pcg::Pcg64Mcg::from_seed(seed) }
+        hasher.finish128()
+    }
+}
+
+/// Random numbers by their places, of which any can be had without those before it: what a line draws does not depend on
+/// which other lines are seen. The numbers are those of SplitMix64 (Steele, Lea and Flood 2014), each a mixture of its
+/// place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Table {
+    start: u64,
+}
+
+impl Table {
+    /// The table of nothing in particular, for what is not read.
+    pub const ZERO: Self = Self { start: 0 };
+
+    /// The table of a row of this table.
+    #[must_use]
+    pub fn row(self, row: i64) -> Self {
+        Self { start: self.bits(row) }
+    }
+
+    /// A number in [0, 1), of 53 random bits.
+    #[must_use]
+    pub fn unit(self, place: i64) -> f64 {
+        (self.bits(place) >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+    }
+
+    /// A number in (-1, 1), the more seldom the farther it lies from 0: half the sum of two even ones.
+    #[must_use]
+    pub fn stray(self, place: i64) -> f64 {
+        let bits = self.bits(place);
+        let [a, b] = [(bits >> 32) as u32, bits as u32].map(|half| f64::from(half.cast_signed()));
+        (a + b + 1.0) * (0.5 / (1u64 << 31) as f64)
+    }
+
+    fn bits(self, place: i64) -> u64 {
+        let mut z = self.start.wrapping_add(place.cast_unsigned().wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
     }
 }
 
@@ -80,5 +130,30 @@ impl Stream {
                 return (wide >> 64) as u64;
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_are_splitmix() {
+        // The first numbers of SplitMix64 with the seed 1234567.
+        let table = Table { start: 1_234_567 };
+        assert_eq!([0, 1].map(|place| table.bits(place)), [6_457_827_717_110_365_317, 3_203_168_211_198_807_973]);
+        assert_ne!(table.row(0), table.row(-1));
+    }
+
+    #[test]
+    fn strays_are_bounded_and_centred() {
+        let table = Key { seed: 1, name: "paint", purpose: "test" }.table(7);
+        let strays: Vec<f64> = (-5000..5000).map(|place| table.stray(place)).collect();
+        assert!(strays.iter().all(|stray| stray.abs() < 1.0));
+        let mean = strays.iter().sum::<f64>() / 1e4;
+        let square = strays.iter().map(|stray| stray * stray).sum::<f64>() / 1e4;
+        // Half the sum of two even numbers has a variance of a sixth.
+        assert!(mean.abs() < 0.02 && (square - 1.0 / 6.0).abs() < 0.01, "{mean} {square}");
+        assert!((0..1000).map(|place| table.unit(place)).all(|unit| (0.0..1.0).contains(&unit)));
     }
 }

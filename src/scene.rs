@@ -4,10 +4,14 @@
 //! evaluated, and every number lies in its range. Spans are kept only to say where a limit was met. A new placement,
 //! shape, angle rule or fill is one more line in its enum and one file in its pass.
 
+use std::sync::Arc;
+
 use serde::{Serialize, Serializer};
 
 use crate::field::Field;
-use crate::geom::{Angle, Length, Period, Point, Rect};
+use crate::geom::bezier::cubics;
+use crate::geom::course::{half_loop, half_wave};
+use crate::geom::{Angle, Cubic, Length, Period, Point, Rect};
 use crate::region::Region;
 use crate::span::Span;
 
@@ -33,7 +37,10 @@ pub struct Canvas {
     pub width: Length,
     /// Greater than zero.
     pub height: Length,
-    /// Width and height of a PNG.
+    /// How far the picture goes on beyond the page on every side, to be trimmed off; not negative.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub bleed: Length,
+    /// Width and height of a PNG, which shows the trimmed page.
     pub pixels: [u32; 2],
     /// Pixels per inch, greater than zero.
     pub dpi: f64,
@@ -60,11 +67,15 @@ impl Canvas {
         }
     }
 
-    /// The page's area.
+    /// The area that is drawn on: the page and its bleed. The page itself has its corner at the origin.
     #[must_use]
     pub fn bounds(&self) -> Rect {
-        Rect::new(Point::default(), Point::new(self.width.to_mm(), self.height.to_mm()))
+        Rect::new(Point::default(), Point::new(self.width.to_mm(), self.height.to_mm())).grown(self.bleed.to_mm())
     }
+}
+
+fn is_zero(length: &Length) -> bool {
+    *length == Length::ZERO
 }
 
 /// Whether a canvas goes on beyond its borders.
@@ -211,6 +222,8 @@ pub enum Draw {
     Paint(Box<Paint>),
     /// A region's outline.
     Outline(Outline),
+    /// Strokes and fills of a file.
+    Ink(Ink),
     /// Some of these under one name.
     Layer(LayerGroup),
 }
@@ -236,6 +249,42 @@ pub struct Outline {
     /// Where the statement stands.
     #[serde(skip)]
     pub span: Span,
+}
+
+/// Strokes and fills of a file, in their own colours.
+#[derive(Debug, Clone, Serialize)]
+pub struct Ink {
+    /// From the bottom up.
+    pub marks: Vec<InkMark>,
+    /// Where the statement stands.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// A fill or stroke of a file.
+#[derive(Debug, Clone, Serialize)]
+pub struct InkMark {
+    /// Its colour.
+    pub colour: Colour,
+    /// What has it.
+    pub shape: InkShape,
+}
+
+/// What a mark of a file covers.
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum InkShape {
+    /// An area.
+    Area(Region),
+    /// Lines of one width.
+    Strokes {
+        /// Greater than zero.
+        pen: Length,
+        /// How they end.
+        cap: Cap,
+        /// Chains of cubic Béziers, of 3n + 1 points each; one that ends at its first point is closed.
+        chains: Vec<Vec<Point>>,
+    },
 }
 
 /// A region filled with a tone.
@@ -574,8 +623,84 @@ pub enum FillKind {
         /// Greater than zero.
         radius: Length,
     },
+    /// Crosses along the hatch lines, one arm along them and one across.
+    Crosses {
+        /// The lines.
+        hatch: Hatch,
+        /// From cross to cross along a line, greater than zero.
+        spacing: Length,
+        /// The length of an arm from end to end, greater than zero.
+        size: Length,
+    },
+    /// Arcs about a place on the tile's edge, one pitch apart; every layer has its centre at another side.
+    Arcs(Hatch),
+    /// Strokes that swing evenly about the hatch lines.
+    Waves {
+        /// The lines.
+        hatch: Hatch,
+        /// How they swing.
+        swing: Swing,
+    },
+    /// Loops along the hatch lines, as of a pen that is not lifted.
+    Scribble {
+        /// The lines.
+        hatch: Hatch,
+        /// The height of a loop, greater than zero.
+        loops: Length,
+        /// From loop to loop along a line, greater than zero.
+        spacing: Length,
+    },
+    /// Sinuous strokes bundled in a trapezoid, a strand of rope.
+    Nawaami {
+        /// The strokes, their pitch measured in the middle of the strand.
+        hatch: Hatch,
+        /// How they swing. Half waves are stretched so that a whole number of them fills the strand.
+        swing: Swing,
+    },
+    /// A figure along the hatch lines.
+    Motif {
+        /// The lines.
+        hatch: Hatch,
+        /// From figure to figure along a line, greater than zero.
+        spacing: Length,
+        /// The figure in millimetres about its middle, its x along the lines.
+        figure: MotifPath,
+    },
     /// The whole tile inked.
     Solid,
+}
+
+/// A sine wave about a line.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Swing {
+    /// Greater than zero.
+    pub wavelength: Length,
+    /// How far it swings to either side, greater than zero.
+    pub amplitude: Length,
+}
+
+impl Swing {
+    /// How much longer than its line the wave is.
+    #[must_use]
+    pub fn stretch(&self) -> f64 {
+        let half = self.wavelength / 2.0;
+        half_wave(half, self.amplitude).length() / half
+    }
+}
+
+/// Strokes of a motif: chains of cubic Béziers, each its first point and then two control points and an end for every
+/// Bézier. One that ends at its first point is closed. Cheap to clone.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct MotifPath(pub Arc<[Vec<Point>]>);
+
+impl MotifPath {
+    /// How long all strokes are.
+    #[must_use]
+    pub fn length(&self) -> Length {
+        let lengths = self.0.iter().flat_map(|chain| cubics(chain)).map(Cubic::length);
+        lengths.fold(Length::ZERO, |sum, length| sum + length)
+    }
 }
 
 impl FillKind {
@@ -583,8 +708,41 @@ impl FillKind {
     #[must_use]
     pub fn hatch(&self) -> Option<&Hatch> {
         match self {
-            Self::Lines(hatch) | Self::Dashes { hatch, .. } | Self::Dots { hatch, .. } => Some(hatch),
+            Self::Lines(hatch) | Self::Arcs(hatch) => Some(hatch),
+            Self::Dashes { hatch, .. }
+            | Self::Dots { hatch, .. }
+            | Self::Crosses { hatch, .. }
+            | Self::Waves { hatch, .. }
+            | Self::Scribble { hatch, .. }
+            | Self::Nawaami { hatch, .. }
+            | Self::Motif { hatch, .. } => Some(hatch),
             Self::Solid => None,
+        }
+    }
+
+    /// The ink of one layer on a large area: the length of its strokes times their width, or the dots' area, over the area
+    /// they are spread on. Ink that lies on ink counts twice, so that dense fills exceed 1; what tiles' edges cut off or leave
+    /// out is not reckoned.
+    #[must_use]
+    pub fn coverage(&self) -> f64 {
+        let along = |hatch: &Hatch| hatch.pen / hatch.pitch;
+        match self {
+            Self::Lines(hatch) | Self::Arcs(hatch) => along(hatch),
+            Self::Dashes { hatch, dash, gap } => along(hatch) * (*dash / (*dash + *gap)),
+            Self::Dots { hatch, spacing, radius } => {
+                std::f64::consts::PI * (*radius / hatch.pitch) * (*radius / *spacing)
+            }
+            Self::Crosses { hatch, spacing, size } => {
+                // Where the arms cross there is ink only once.
+                let arms = (*size * 2.0).to_mm() - hatch.pen.min(*size).to_mm();
+                along(hatch) * arms / spacing.to_mm()
+            }
+            Self::Waves { hatch, swing } | Self::Nawaami { hatch, swing } => along(hatch) * swing.stretch(),
+            Self::Scribble { hatch, loops, spacing } => {
+                along(hatch) * (half_loop(*loops, *spacing).length() * 2.0 / *spacing)
+            }
+            Self::Motif { hatch, spacing, figure } => along(hatch) * (figure.length() / *spacing),
+            Self::Solid => 1.0,
         }
     }
 }

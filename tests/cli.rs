@@ -311,6 +311,29 @@ fn a_picture_with_all_its_files_is_built_anywhere() {
     desk.quietly(&["check", "one.svg"]);
 }
 
+/// A standard library is read whatever the root is, and a picture keeps the text of the one it was made with.
+#[test]
+fn a_picture_keeps_its_standard_library() {
+    let desk = Desk::new();
+    desk.put(
+        "library.kake",
+        "import \"std:manga\"\ncanvas { size: (20mm, 20mm) }\npaint canvas with kakeami(pitch: 1.5mm)\n",
+    );
+    // A file of the same name, where the system allows it, is no standard library.
+    if cfg!(unix) {
+        desk.put("std:manga", "no scene");
+    }
+    desk.quietly(&["build", "library.kake", "-o", "one.svg"]);
+    desk.quietly(&["build", "one.svg", "-o", "again.svg"]);
+    assert!(desk.get("again.svg") == desk.get("one.svg"));
+    let text = String::from_utf8(desk.get("one.svg")).expect("SVG is UTF-8");
+    assert!(text.contains("place: poisson(radius: tile / 1.6)"));
+    desk.put("old.svg", text.replace("place: poisson(radius: tile / 1.6)", "place: poisson(radius: tile / 1.2)"));
+    desk.quietly(&["build", "old.svg", "-o", "again.svg"]);
+    let again = String::from_utf8(desk.get("again.svg")).expect("SVG is UTF-8");
+    assert!(again.contains("tile / 1.2") && again.matches("<path").count() != text.matches("<path").count());
+}
+
 #[test]
 fn a_picture_without_a_scene_says_so() {
     let desk = Desk::new();

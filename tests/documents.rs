@@ -15,7 +15,7 @@ use kakeami::lower::LowerConfig;
 use kakeami::{Config, compile};
 
 /// The documents with scenes in them.
-const DOCUMENTS: [&str; 2] = ["README.md", "docs/language.md"];
+const DOCUMENTS: [&str; 3] = ["README.md", "docs/language.md", "docs/gallery.md"];
 
 fn repository() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
@@ -40,16 +40,16 @@ impl Loader for Beside<'_> {
 }
 
 /// A block of code in a document.
-struct Block {
+pub(crate) struct Block {
     /// What stands behind its first fence.
-    info: String,
-    text: String,
+    pub(crate) info: String,
+    pub(crate) text: String,
     /// The line of the document that its first fence is on.
-    line: usize,
+    pub(crate) line: usize,
 }
 
 /// The blocks of code of a document, fenced by three backticks at the start of a line.
-fn blocks(document: &str) -> Vec<Block> {
+pub(crate) fn blocks(document: &str) -> Vec<Block> {
     let mut blocks = Vec::new();
     let mut open: Option<Block> = None;
     for (number, line) in document.lines().enumerate() {
@@ -145,7 +145,8 @@ fn targets(document: &str) -> Vec<String> {
 
 #[test]
 fn what_documents_point_to_is_there() {
-    let documents = ["README.md", "CHANGELOG.md", "docs/language.md", "docs/decisions.md", "examples/data/SOURCES.md"];
+    let others = ["CHANGELOG.md", "docs/decisions.md", "examples/data/SOURCES.md"];
+    let documents = DOCUMENTS.into_iter().chain(others);
     for document in documents {
         let path = repository().join(document);
         let text = read(&path);

@@ -9,6 +9,7 @@ mod codes;
 mod determinism;
 mod documents;
 mod examples;
+mod gallery;
 mod later;
 mod repeat;
 mod support;

@@ -123,10 +123,8 @@ fn check_continuations(drawing: &Drawing) -> Result<(), String> {
             for row in [-1.0, 0.0, 1.0] {
                 let there = centre + Vec2::new(column * PERIOD[0], row * PERIOD[1]);
                 let reach = radius - 1e-6;
-                let is_seen = -reach < there.x
-                    && there.x < PERIOD[0] + reach
-                    && -reach < there.y
-                    && there.y < PERIOD[1] + reach;
+                let is_seen =
+                    -reach < there.x && there.x < PERIOD[0] + reach && -reach < there.y && there.y < PERIOD[1] + reach;
                 let has = |&(other, size): &(Point, f64)| size == radius && other.distance(there) < 1e-9;
                 if is_seen && !marks.dots.iter().any(has) {
                     return Err(format!("the dot at {centre:?} does not come in at {there:?}"));
@@ -278,7 +276,8 @@ fn copies_side_by_side_show_no_seam() {
 /// The same test sees the seam of a canvas that does not repeat.
 #[test]
 fn the_seam_of_a_page_with_an_end_is_seen() {
-    let text = scene(PLACEMENTS[0], SHAPES[1], FILLS[0], ("", "canvas", ""), 5).replace("repeat: true", "repeat: false");
+    let text =
+        scene(PLACEMENTS[0], SHAPES[1], FILLS[0], ("", "canvas", ""), 5).replace("repeat: true", "repeat: false");
     let drawing = drawing(&text);
     assert!(check_continuations(&drawing).is_err());
 }
@@ -299,7 +298,8 @@ fn lattices_go_round_whole() {
         let scene = compiled.lowered.scene.expect("the scene is without fault");
         let paint = kakeami::paints(&scene).next().expect("it paints");
         let limits = Config::default().lower.limits;
-        let stages = kakeami::PaintStages::new(paint, &scene.canvas, &limits, &mut (), &mut Vec::new()).expect("it is small");
+        let stages =
+            kakeami::PaintStages::new(paint, &scene.canvas, &limits, &mut (), &mut Vec::new()).expect("it is small");
         assert_eq!((stages.sites.points.len(), stages.graph.edges().count()), (sites, edges), "{place}");
         assert!(stages.tiles.inside.iter().all(|&inside| inside));
         check_continuations(&compiled.drawing.expect("it is drawn")).expect(place);

@@ -1,8 +1,8 @@
-//! What a picture carries so that it can be made again from itself: a [`Metadata`] goes into an SVG or a PNG, and
+//! What a picture carries so that it can be made again from itself: a [`Metadata`] goes into an SVG, a PNG or a PDF, and
 //! [`extract`] gets it back from the bytes.
 //!
-//! The form in both is JSON: the text of an element of its own name space in the SVG, a compressed `iTXt` chunk in the
-//! PNG. Nothing in it depends on the time or the machine. Pictures come from strangers, so reading one never panics and
+//! The form in all is JSON: the text of an element of its own name space in the SVG and in the PDF's XMP packet, a compressed
+//! `iTXt` chunk in the PNG. Nothing in it depends on the time or the machine. Pictures come from strangers, so reading one never panics and
 //! never unpacks more than `LARGEST` bytes.
 
 use std::collections::BTreeMap;
@@ -11,6 +11,7 @@ use std::io::Cursor;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use svg::node::Text;
 use usvg::roxmltree;
 
 /// The name space of the element in an SVG.
@@ -19,6 +20,11 @@ pub(super) const NAMESPACE: &str = "urn:kakeami:picture:1";
 pub(super) const ELEMENT: &str = "picture";
 /// The keyword of the chunk in a PNG.
 pub(super) const KEYWORD: &str = "kakeami";
+
+/// How an XMP packet in a PDF starts, but for its attributes.
+const XMP_START: &str = "<x:xmpmeta";
+/// How it ends.
+const XMP_END: &str = "</x:xmpmeta>";
 
 /// The most bytes of JSON that are unpacked from a picture.
 const LARGEST: usize = 256 << 20;
@@ -75,18 +81,37 @@ impl Metadata {
         Ok(json.replace('\u{fffe}', "\\ufffe").replace('\u{ffff}', "\\uffff"))
     }
 
+    /// As an XMP packet (ISO 16684-1), which other programs find without reading the file around it.
+    ///
+    /// # Errors
+    /// None that the type can have.
+    pub(super) fn to_xmp(&self) -> std::io::Result<String> {
+        let (version, json) = (Text::new(self.version.as_str()), Text::new(self.to_json()?));
+        Ok(format!(
+            "<?xpacket begin=\"\u{feff}\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>\n\
+             {XMP_START} xmlns:x=\"adobe:ns:meta/\">\n\
+             <rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">\n\
+             <rdf:Description rdf:about=\"\" xmlns:pdf=\"http://ns.adobe.com/pdf/1.3/\" xmlns:kakeami=\"{NAMESPACE}\">\n\
+             <pdf:Producer>kake {version}</pdf:Producer>\n\
+             <kakeami:{ELEMENT}>{json}</kakeami:{ELEMENT}>\n\
+             </rdf:Description>\n</rdf:RDF>\n{XMP_END}\n<?xpacket end=\"r\"?>\n"
+        ))
+    }
+
     fn from_json(json: &str) -> Option<Self> {
         serde_json::from_str(json).ok()
     }
 }
 
-/// The metadata in the bytes of an SVG or PNG, if it is there and whole.
+/// The metadata in the bytes of an SVG, a PNG or a PDF, if it is there and whole.
 #[must_use]
 pub fn extract(bytes: &[u8]) -> Option<Metadata> {
     if bytes.starts_with(b"\x89PNG") {
         extract_png(bytes, LARGEST)
+    } else if bytes.starts_with(b"%PDF") {
+        extract_pdf(bytes, LARGEST)
     } else {
-        extract_svg(std::str::from_utf8(bytes).ok()?)
+        extract_xml(std::str::from_utf8(bytes).ok()?)
     }
 }
 
@@ -109,7 +134,26 @@ fn in_chunks(info: &::png::Info<'_>, largest: usize) -> Option<Metadata> {
     })
 }
 
-fn extract_svg(text: &str) -> Option<Metadata> {
+/// XMP packets are there to be found by looking for them.
+fn extract_pdf(bytes: &[u8], largest: usize) -> Option<Metadata> {
+    let mut rest = bytes;
+    loop {
+        rest = &rest[find(rest, XMP_START)?..];
+        let (packet, after) = rest.split_at(find(rest, XMP_END)? + XMP_END.len());
+        let text = std::str::from_utf8(packet).ok().filter(|text| text.len() <= largest);
+        if let Some(found) = text.and_then(extract_xml) {
+            return Some(found);
+        }
+        rest = after;
+    }
+}
+
+/// Where a word first stands.
+fn find(bytes: &[u8], word: &str) -> Option<usize> {
+    bytes.windows(word.len()).position(|window| window == word.as_bytes())
+}
+
+fn extract_xml(text: &str) -> Option<Metadata> {
     // A picture without the name space is told apart without reading all of it as XML.
     if !text.contains(NAMESPACE) {
         return None;
@@ -128,16 +172,21 @@ mod tests {
     use proptest::prelude::*;
 
     use super::super::samples::scattered;
-    use super::super::{png, svg};
+    use super::super::{pdf, png, svg};
     use super::*;
 
     /// A picture of each kind that carries the metadata.
-    fn pictures(metadata: &Metadata) -> [Vec<u8>; 2] {
+    fn pictures(metadata: &Metadata) -> [Vec<u8>; 3] {
+        pictures_of(Some(metadata))
+    }
+
+    fn pictures_of(metadata: Option<&Metadata>) -> [Vec<u8>; 3] {
         let drawing = scattered(4.0, 4.0, 5);
-        let (mut vector, mut raster) = (Vec::new(), Vec::new());
-        svg::write(&drawing, Some(metadata), &mut vector).unwrap();
-        png::write(&drawing, Some(metadata), &mut raster).unwrap();
-        [vector, raster]
+        let (mut vector, mut raster, mut print) = (Vec::new(), Vec::new(), Vec::new());
+        svg::write(&drawing, metadata, &mut vector).unwrap();
+        png::write(&drawing, metadata, &mut raster).unwrap();
+        pdf::write(&drawing, metadata, &mut print).unwrap();
+        [vector, raster, print]
     }
 
     fn sample() -> Metadata {
@@ -154,16 +203,13 @@ mod tests {
 
     #[test]
     fn nothing_in_pictures_without_it() {
-        let drawing = scattered(4.0, 4.0, 5);
-        let (mut vector, mut raster) = (Vec::new(), Vec::new());
-        svg::write(&drawing, None, &mut vector).unwrap();
-        png::write(&drawing, None, &mut raster).unwrap();
-        assert_eq!((extract(&vector), extract(&raster), extract(b"")), (None, None, None));
+        assert_eq!(pictures_of(None).map(|picture| extract(&picture)), [None, None, None]);
+        assert_eq!(extract(b""), None);
     }
 
     #[test]
     fn chunk_behind_the_image_is_found() {
-        let [_, mut png] = pictures(&sample());
+        let [_, mut png, _] = pictures(&sample());
         // The chunks: a length, a name, the data and a checksum each.
         let chunk_at = png.windows(4).position(|name| name == b"iTXt").unwrap() - 4;
         let length = u32::from_be_bytes(png[chunk_at..chunk_at + 4].try_into().unwrap()) as usize + 12;
@@ -175,7 +221,7 @@ mod tests {
 
     #[test]
     fn an_editor_may_rewrite_the_svg() {
-        let [svg, _] = pictures(&sample());
+        let [svg, ..] = pictures(&sample());
         let text = String::from_utf8(svg)
             .unwrap()
             .replace("<kakeami:", "<other:")
@@ -187,7 +233,7 @@ mod tests {
 
     #[test]
     fn a_bomb_is_not_unpacked() {
-        let [_, png] = pictures(&Metadata { scene: "a".repeat(1 << 16), ..sample() });
+        let [_, png, _] = pictures(&Metadata { scene: "a".repeat(1 << 16), ..sample() });
         assert!(png.len() < 1 << 14);
         assert_eq!(extract_png(&png, 1 << 16), None);
         assert!(extract_png(&png, 1 << 17).is_some());

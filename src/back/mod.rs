@@ -9,6 +9,7 @@ pub mod metadata;
 mod number;
 mod outline;
 mod path;
+pub mod pdf;
 mod pieces;
 pub mod png;
 pub mod raster;
@@ -28,6 +29,7 @@ pub(crate) mod samples {
         Page {
             width: Length::mm(width),
             height: Length::mm(height),
+            bleed: Length::ZERO,
             pixels: [(width * 10.0) as u32, (height * 10.0) as u32],
             dpi: 254.0,
             paper: Some(Colour::WHITE),

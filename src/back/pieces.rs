@@ -159,11 +159,11 @@ pub(super) fn area_pieces(areas: &[Vec<Vec<Point>>], together: usize) -> Vec<Pie
         .collect()
 }
 
-/// Makes the text of pieces, several portions at a time, and hands it on in order.
-pub(super) fn write_pieces(
+/// Makes something of pieces, several portions at a time, and hands it on in order.
+pub(super) fn for_each_portion<T: Send>(
     pieces: &[Piece<'_>],
-    text: impl Fn(&[Piece<'_>]) -> Vec<u8> + Sync,
-    mut write: impl FnMut(&[u8]) -> io::Result<()>,
+    make: impl Fn(&[Piece<'_>]) -> T + Sync,
+    mut take: impl FnMut(T) -> io::Result<()>,
 ) -> io::Result<()> {
     let mut portions = Vec::new();
     let (mut start, mut points) = (0, 0);
@@ -176,10 +176,8 @@ pub(super) fn write_pieces(
     }
     portions.push(&pieces[start..]);
     for several in portions.chunks(AT_ONCE) {
-        let texts: Vec<Vec<u8>> = several.par_iter().map(|pieces| text(pieces)).collect();
-        for text in texts {
-            write(&text)?;
-        }
+        let made: Vec<T> = several.par_iter().map(|pieces| make(pieces)).collect();
+        made.into_iter().try_for_each(&mut take)?;
     }
     Ok(())
 }

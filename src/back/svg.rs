@@ -172,7 +172,7 @@ fn write_layer(layer: &Layer, together: usize, out: &mut dyn Write) -> io::Resul
             Style::Stroke(pen, cap) => stroke_group(layer.ink, pen, cap),
         };
         writeln!(out, "{}", open_tag(&element))?;
-        pieces::write_pieces(&pieces, pieces_text, |text| out.write_all(text))?;
+        pieces::for_each_portion(&pieces, pieces_text, |text| out.write_all(&text))?;
         close(1, out)?;
     }
     Ok(())

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::back::metadata::Metadata;
-use crate::back::{json, png, svg};
+use crate::back::{json, pdf, png, svg};
 use crate::diag::{Code, Diagnostic};
 use crate::drawing::Drawing;
 use crate::scene::Limits;
@@ -21,7 +21,7 @@ use super::{Ended, SceneArgs, report};
 pub(super) struct BuildArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// Where to: FILE.svg, FILE.png or FILE.json, or - for SVG on standard output; several times for several files.
+    /// Where to: FILE.svg, FILE.png, FILE.pdf or FILE.json, or - for SVG on standard output; several times for several files.
     /// By default the scene's name with .svg, in this folder
     #[arg(short, long, value_name = "FILE")]
     output: Vec<PathBuf>,
@@ -74,6 +74,7 @@ fn parse_dpi(text: &str) -> Result<f64, String> {
 enum Kind {
     Svg,
     Png,
+    Pdf,
     Json,
 }
 
@@ -85,8 +86,9 @@ fn kind_of(output: &Path) -> Result<Kind, String> {
     match extension.to_str() {
         Some("svg") => Ok(Kind::Svg),
         Some("png") => Ok(Kind::Png),
+        Some("pdf") => Ok(Kind::Pdf),
         Some("json") => Ok(Kind::Json),
-        _ => Err(format!("{}: outputs end in .svg, .png or .json", output.display())),
+        _ => Err(format!("{}: outputs end in .svg, .png, .pdf or .json", output.display())),
     }
 }
 
@@ -215,6 +217,7 @@ impl Kind {
         match self {
             Self::Svg => "svg",
             Self::Png => "png",
+            Self::Pdf => "pdf",
             Self::Json => "json",
         }
     }
@@ -270,6 +273,7 @@ fn write(
                 svg::write_pattern(drawing, &stem, metadata, out)
             }
         },
+        Kind::Pdf => pdf::write(drawing, metadata, out),
         Kind::Json => json::write(drawing, out),
         Kind::Png => png::write(drawing, metadata, out).map_err(|error| match error {
             png::PngError::Io(error) => error,

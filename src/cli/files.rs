@@ -48,6 +48,10 @@ impl Loader for FsLoader {
         }
         Ok(fs::read(&full).map_err(unreadable)?.into())
     }
+
+    fn library(&self, name: &str) -> Option<Arc<[u8]>> {
+        self.held.get(name).cloned()
+    }
 }
 
 /// A scene that a command was given.
@@ -89,7 +93,7 @@ pub(super) fn open(scene: &Path, root: Option<&Path>) -> Result<Opened, OpenErro
         None => folder.ancestors().find(|dir| dir.join("kake.toml").is_file()).unwrap_or(&folder).to_owned(),
     };
     let extension = full.extension().unwrap_or_default().to_ascii_lowercase();
-    if extension == "svg" || extension == "png" {
+    if extension == "svg" || extension == "png" || extension == "pdf" {
         let bytes = fs::read(&full).map_err(|error| failed(scene, &error))?;
         let Some(picture) = metadata::extract(&bytes) else {
             return Err(OpenError::NoScene(scene.display().to_string()));

@@ -126,9 +126,20 @@ codes! {
     Image "image" "The file is not a picture that can be read"
         "Pictures are PNG or JPEG."
     Svg "svg" "The file is not an SVG that can be read"
-        "Regions are taken from the filled shapes of an SVG file."
+        "Regions are taken from the filled shapes of an SVG file, floods from its lines, and ink from both."
     SvgId "svg-id" "The SVG file has no such element"
-        "The name is looked up among the ids of the file's elements. Only elements that fill an area can be regions."
+        "The name is looked up among the ids, layers, classes or colours of the file's elements. Only elements that fill an \
+         area can be regions."
+    SvgLook "svg-look" "Part of an SVG file is not drawn as the file has it"
+        "`ink` draws strokes and fills in plain colours. Gradients are drawn in their mean colour; patterns, pictures and \
+         text are left out; masks, filters and blending are ignored. Joins are round."
+    Flood "flood" "A flood starts where it cannot"
+        "A flood starts at a point of the canvas that lies on the drawing's page, and in the white between its lines: not \
+         on a stroke or a dark fill."
+    Leak "leak" "A flood leaks"
+        "The flood reaches the border of the drawing's page. Gaps between lines are bridged up to `close`, 0.5 mm by \
+         default; the message names the widest of the gaps that would have to be bridged. Where the border itself is meant \
+         to hold the flood, as it holds a sky, write `border: wall`."
     Path "path-data" "The path data cannot be read"
         "Path data is what stands in the `d` attribute of an SVG path: `M 0 0 L 10 0 L 10 10 Z`. Units are canvas units."
     EmptyRegion "empty-region" "A region holds nothing"

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Blender, Field, Function, Image, Node, Operator, Tree};
+use super::{Blender, Field, Function, Image, Node, Operator, Ramp, Sense, Steps, Tree, direction};
 use crate::geom::{Angle, Length, Point, Rect};
 use crate::region::{Region, contained};
 
@@ -18,14 +18,17 @@ impl Field {
             | Node::Radial { .. }
             | Node::Noise(_)
             | Node::Image { .. }
-            | Node::Distance(_) => [None; 3],
+            | Node::Distance(_)
+            | Node::Tangent(_) => [None; 3],
+            Node::Ramp(_, a) | Node::Steps(_, a) | Node::Direction { of: a, .. } => [Some(a), None, None],
             Node::Unary(_, a) => [Some(a), None, None],
             Node::Binary(_, a, b) => [Some(a), Some(b), None],
             Node::Ternary(_, a, b, c) | Node::Select(a, b, c) => [Some(a), Some(b), Some(c)],
         };
         let children = || children.iter().flatten();
         let depth = children().map(|child| child.depth()).max().unwrap_or(0).saturating_add(1);
-        let cost = children().fold(1u64, |cost, child| cost.saturating_add(child.cost()));
+        let times = if let Node::Direction { .. } = node { direction::SAMPLES } else { 1 };
+        let cost = children().fold(1u64, |cost, child| cost.saturating_add(child.cost().saturating_mul(times)));
         Self(Arc::new(Tree { node, depth, cost }))
     }
 
@@ -113,5 +116,61 @@ impl Field {
     #[must_use]
     pub fn distance(region: Region) -> Self {
         Self::new(Node::Distance(region))
+    }
+
+    /// The direction of a region's outline at its nearest point.
+    #[must_use]
+    pub fn tangent(region: Region) -> Self {
+        Self::new(Node::Tangent(region))
+    }
+
+    /// A ramp over this field, which gives the share of the way.
+    #[must_use]
+    pub fn ramp(self, ramp: Ramp) -> Self {
+        match self.as_constant() {
+            Some(share) => Self::constant(ramp.at(share)),
+            None => Self::new(Node::Ramp(ramp, self)),
+        }
+    }
+
+    /// This field in bands.
+    #[must_use]
+    pub fn steps(self, steps: Steps) -> Self {
+        match self.as_constant() {
+            Some(value) => Self::constant(steps.apply(value)),
+            None => Self::new(Node::Steps(steps, self)),
+        }
+    }
+
+    /// The direction in which this field changes, or does not.
+    #[must_use]
+    pub fn direction(self, scale: Length, sense: Sense) -> Self {
+        Self::new(Node::Direction { of: self, scale, sense })
+    }
+
+    /// The same field of other images: `change` gives each its own for the place it takes. `None` where it does.
+    ///
+    /// It calls itself as deep as the tree, and visits shared parts wherever they stand.
+    pub fn with_images(&self, change: &mut impl FnMut(&Arc<Image>, &Rect) -> Option<Arc<Image>>) -> Option<Self> {
+        let mut part = |field: &Self| field.with_images(change);
+        let node = match self.node() {
+            Node::Constant(_)
+            | Node::X(_)
+            | Node::Y(_)
+            | Node::Linear { .. }
+            | Node::Radial { .. }
+            | Node::Noise(_)
+            | Node::Distance(_)
+            | Node::Tangent(_) => return Some(self.clone()),
+            Node::Image { image, place } => Node::Image { image: change(image, place)?, place: *place },
+            Node::Ramp(ramp, a) => Node::Ramp(ramp.clone(), part(a)?),
+            Node::Steps(steps, a) => Node::Steps(steps.clone(), part(a)?),
+            Node::Direction { of, scale, sense } => Node::Direction { of: part(of)?, scale: *scale, sense: *sense },
+            Node::Unary(function, a) => Node::Unary(*function, part(a)?),
+            Node::Binary(operator, a, b) => Node::Binary(*operator, part(a)?, part(b)?),
+            Node::Ternary(blender, a, b, c) => Node::Ternary(*blender, part(a)?, part(b)?, part(c)?),
+            Node::Select(a, b, c) => Node::Select(part(a)?, part(b)?, part(c)?),
+        };
+        Some(Self::new(node))
     }
 }

@@ -1,6 +1,6 @@
 //! The values of fields: a tree and a point come in, a number goes out that is never NaN.
 
-use super::{Blender, Field, Function, Node, Operator};
+use super::{Blender, Field, Function, Node, Operator, direction};
 use crate::geom::Point;
 
 /// Below it L* is a straight line (CIE 15:2004, section 8.2.1).
@@ -25,6 +25,10 @@ impl Field {
             Node::Noise(noise) => noise.at(p),
             Node::Image { image, place } => image.at(place, p),
             Node::Distance(region) => region.signed_distance(p),
+            Node::Ramp(ramp, a) => ramp.at(a.at(p)),
+            Node::Steps(steps, a) => steps.apply(a.at(p)),
+            Node::Direction { of, scale, sense } => direction::direction(of, p, *scale, *sense),
+            Node::Tangent(region) => region.tangent(p).to_radians(),
             Node::Unary(function, a) => function.apply(a.at(p)),
             Node::Binary(operator, a, b) => operator.apply(a.at(p), b.at(p)),
             Node::Ternary(blender, a, b, c) => blender.apply(a.at(p), b.at(p), c.at(p)),

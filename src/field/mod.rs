@@ -4,11 +4,14 @@
 //! an image or beyond a gradient's ends take the nearest value. A value is never NaN, and infinite only where
 //! arithmetic overflows.
 
+mod blur;
 mod build;
+mod direction;
 mod evaluate;
 mod image;
 mod mask;
 mod noise;
+mod ramp;
 #[cfg(test)]
 mod tests;
 
@@ -19,9 +22,11 @@ use serde::{Serialize, Serializer};
 use crate::geom::{Length, Point, Rect};
 use crate::region::Region;
 
+pub use direction::{Sense, sample_distance};
 pub use image::{Channel, Image, ImageError};
 pub use mask::{MOST_CORNERS, TooDetailed, mask};
 pub use noise::Noise;
+pub use ramp::{Ease, Ramp, Steps, Stop};
 
 /// A value at every point of the page. Cheap to clone.
 #[derive(Debug, Clone)]
@@ -77,6 +82,21 @@ pub enum Node {
     },
     /// The distance to a region's outline in millimetres, positive inside.
     Distance(Region),
+    /// The value of a ramp at the share of the way that a field gives.
+    Ramp(Ramp, Field),
+    /// The value of the band that a field's value falls into.
+    Steps(Steps, Field),
+    /// The direction in which a field changes, or does not change, in [0, pi).
+    Direction {
+        /// The field that is looked at.
+        of: Field,
+        /// The radius of the window that directions are averaged over, greater than zero.
+        scale: Length,
+        /// Which of the two.
+        sense: Sense,
+    },
+    /// The direction of a region's outline at its nearest point, in [0, pi); 0 for the empty region.
+    Tangent(Region),
     /// A function of one field.
     Unary(Function, Field),
     /// A function of two fields.

@@ -1,5 +1,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
+mod shaped;
+
 use std::io::Cursor;
 
 use ::image::{self as pictures, DynamicImage, ImageFormat};

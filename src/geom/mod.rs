@@ -5,8 +5,11 @@
 
 mod angle;
 pub mod bezier;
+pub mod chain;
 pub mod clip;
+pub mod course;
 mod figure;
+pub mod hull;
 mod length;
 mod period;
 mod point;

@@ -36,8 +36,8 @@ const SHEETS: [(&str, f64, f64); 14] = [
 const SHEET_NAMES: &[&str] =
     &["a0", "a1", "a2", "a3", "a4", "a5", "a6", "b4", "b5", "jis_b4", "jis_b5", "legal", "letter", "tabloid"];
 
-const PROPERTIES: [&str; 8] = ["size", "dpi", "pixels", "paper", "ink", "depth", "unit", "repeat"];
-const LATER: [&str; 2] = ["bleed", "gain"];
+const PROPERTIES: [&str; 9] = ["size", "bleed", "dpi", "pixels", "paper", "ink", "depth", "unit", "repeat"];
+const LATER: [&str; 1] = ["gain"];
 
 /// Pixels per inch where neither `dpi` nor `pixels` says otherwise: the least that print shops take for line art.
 const DEFAULT_DPI: f64 = 600.0;
@@ -54,6 +54,7 @@ pub(super) fn default() -> Canvas {
     Canvas {
         width,
         height,
+        bleed: Length::ZERO,
         pixels: pixels_of([width, height], DEFAULT_DPI),
         dpi: DEFAULT_DPI,
         paper: Some(Colour::WHITE),
@@ -95,6 +96,7 @@ pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Option<Canvas> {
     reader.cx.dpi = dpi.or(assumed);
     let size = find("size").and_then(|property| reader.size(property));
     let pixels = find("pixels").and_then(|property| reader.pixels(property));
+    let bleed = reader.bleed(find("bleed"));
     let paper = reader.colour(find("paper"), &["none"], Some(Colour::WHITE));
     let ink = reader.colour(find("ink"), &[], Some(Colour::BLACK));
     let depth = reader.depth(find("depth"));
@@ -114,15 +116,22 @@ pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Option<Canvas> {
         _ => pixels_of([width, height], dpi),
     };
     cx.dpi = Some(dpi);
-    let bounds = Rect::new(Point::default(), Point::new(width.to_mm(), height.to_mm()));
+    // A bleed that is refused is none, so that what lies on the page is still checked.
+    let grown = bleed.unwrap_or(Length::ZERO).to_mm();
+    let bounds = Rect::new(Point::default(), Point::new(width.to_mm(), height.to_mm())).grown(grown);
     cx.page = Some(Region::rect(bounds));
-    let repeat = repeat?;
+    let (paper, ink, depth, unit) = (paper?, ink??, depth?, Length::mm(unit?));
+    let (repeat, bleed) = (repeat?, bleed?);
+    if repeat == Repeat::Both && bleed > Length::ZERO {
+        let message = "a canvas that repeats goes on beyond its borders: it has no bleed";
+        cx.report(Diagnostic::error(Code::Repeat, find("bleed").map_or(span, |bleed| bleed.value.span), message));
+        return None;
+    }
     cx.period = match repeat {
         Repeat::Off => None,
         Repeat::Both => Some(Period::new(width, height)),
     };
-    let unit = Length::mm(unit?);
-    Some(Canvas { width, height, pixels, dpi, paper: paper?, ink: ink??, depth: depth?, unit, repeat })
+    Some(Canvas { width, height, bleed, pixels, dpi, paper, ink, depth, unit, repeat })
 }
 
 fn check_property(cx: &mut Cx<'_, '_>, property: &Property, earlier: &[&Property]) {
@@ -191,6 +200,17 @@ impl<'a> Reader<'_, 'a, '_> {
             return Some(mm);
         }
         self.refuse(property.value.span, format!("`{}` must be greater than zero", property.name.name))
+    }
+
+    /// How far the picture goes on beyond the page.
+    fn bleed(&mut self, property: Option<&'a Property>) -> Option<Length> {
+        let Some(property) = property else { return Some(Length::ZERO) };
+        let mm = eval::expect(self.cx, self.scope, &property.value, Slot::of(Kind::Length)).as_length()?;
+        if (0.0..=LARGEST).contains(&mm) {
+            return Some(Length::mm(mm));
+        }
+        let wrong = if mm < 0.0 { "must not be negative" } else { "is at most 100 metres" };
+        self.refuse(property.value.span, format!("`bleed` {wrong}"))
     }
 
     /// A number in a range; `None` where it is not given.

@@ -171,6 +171,9 @@ fn hint(value: &Value, kind: Kind, slot: Slot) -> Option<String> {
         (Value::Tuple(_), Kind::Box | Kind::Point) => "its members are lengths".to_owned(),
         (Value::Word(word), _) => format!("`{word}` belongs elsewhere"),
         (Value::Field(_), Kind::Angles) => "`along(field)` turns tiles along a field of angles".to_owned(),
+        (Value::Region(_), Kind::Drawing) => {
+            "what is inked is named at its place: `ink svg(\"figure.svg\")`".to_owned()
+        }
         (Value::Tone(_), _) => "tones stand behind `with`".to_owned(),
         _ => return None,
     })

@@ -49,6 +49,10 @@ pub(super) struct Cx<'a, 'c> {
     /// The names that fields are called after while they are evaluated, with a count of the noises in each.
     pub(super) naming: Vec<(String, u32)>,
     pub(super) images: BTreeMap<(String, &'static str), Option<Arc<Image>>>,
+    /// Blurred images by the address of the image and how much it was blurred, with the image itself.
+    pub(super) blurred: BTreeMap<(usize, u64), (Arc<Image>, Arc<Image>)>,
+    /// How many pixels were blurred, all images together.
+    pub(super) blurred_pixels: u64,
     pub(super) drawings: BTreeMap<String, Option<Rc<SvgFile>>>,
     /// Warnings of tones that lack something, until a paint says so.
     pub(super) lacking: Vec<Diagnostic>,
@@ -90,6 +94,8 @@ impl<'a, 'c> Cx<'a, 'c> {
             choices: BTreeMap::new(),
             naming: Vec::new(),
             images: BTreeMap::new(),
+            blurred: BTreeMap::new(),
+            blurred_pixels: 0,
             drawings: BTreeMap::new(),
             lacking: Vec::new(),
             checked: BTreeSet::new(),

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use crate::diag::{Code, Diagnostic};
 use crate::geom::Length;
 use crate::region::Region;
-use crate::scene::{Colour, Draw, LayerGroup, Outline, Paint};
+use crate::scene::{Colour, Draw, Ink, LayerGroup, Outline, Paint};
 use crate::span::Span;
 use crate::syntax::ast::{Expr, Ident, Statement, StatementKind};
 
@@ -15,12 +15,13 @@ use super::cx::Cx;
 use super::scope::{Binding, Scope};
 use super::tone::{self, ToneValue};
 use super::value::{Kind, Value};
-use super::{branch, canvas, eval, modules, names, repeat};
+use super::{branch, canvas, eval, modules, names, repeat, vocabulary};
 
 /// What is drawn before paints have their names.
 enum Drawn {
     Paint(Box<Painted>),
     Outline(Outline),
+    Ink(Ink),
     Layer { name: String, ink: Option<Colour>, draws: Vec<Self> },
 }
 
@@ -39,6 +40,7 @@ pub(super) fn is_drawing(kind: &StatementKind) -> bool {
     match kind {
         StatementKind::Paint { .. }
         | StatementKind::Outline { .. }
+        | StatementKind::Ink { .. }
         | StatementKind::Layer { .. }
         | StatementKind::For { .. }
         | StatementKind::If { .. } => true,
@@ -155,7 +157,13 @@ fn run<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, body: &'a [Statement], ou
                 out.extend(painted.map(|painted| Drawn::Paint(Box::new(painted))));
             }
             StatementKind::Outline { region, pen } => {
-                out.extend(outline(cx, scope, region, pen, statement.span).map(Drawn::Outline));
+                out.extend(outline(cx, scope, region, pen.as_ref(), statement.span).map(Drawn::Outline));
+            }
+            StatementKind::Ink { drawing } => {
+                let drawing = eval::expect(cx, scope, drawing, Slot::of(Kind::Drawing));
+                if let (Value::Drawing(marks), false) = (drawing, cx.is_dead()) {
+                    out.push(Drawn::Ink(Ink { marks: marks.to_vec(), span: statement.span }));
+                }
             }
             StatementKind::Layer { name, ink, body } => {
                 let name = eval::expect(cx, scope, name, Slot::of(Kind::String));
@@ -324,17 +332,21 @@ fn outline<'a>(
     cx: &mut Cx<'a, '_>,
     scope: &Rc<Scope<'a>>,
     region: &'a Expr,
-    pen: &'a Expr,
+    pen: Option<&'a Expr>,
     span: Span,
 ) -> Option<Outline> {
     let area = eval::expect(cx, scope, region, Slot::of(Kind::Region));
-    let width = eval::expect(cx, scope, pen, Slot::of(Kind::Length));
+    let width = match pen {
+        Some(pen) => eval::expect(cx, scope, pen, Slot::of(Kind::Length)),
+        None => Value::Length(vocabulary::DEFAULT_PEN.to_mm()),
+    };
     if cx.is_dead() {
         return None;
     }
     let (Value::Region(area), Value::Length(width)) = (area, width) else { return None };
     if width <= 0.0 {
-        cx.report_value(Diagnostic::error(Code::Range, pen.span, "`pen` must be greater than zero"));
+        let place = pen.map_or(span, |pen| pen.span);
+        cx.report_value(Diagnostic::error(Code::Range, place, "`pen` must be greater than zero"));
         return None;
     }
     if cx.period.is_none() || area.is_empty() {
@@ -411,7 +423,7 @@ fn collect<'d>(drawn: &'d [Drawn], out: &mut Vec<&'d Painted>) {
     for drawn in drawn {
         match drawn {
             Drawn::Paint(paint) => out.push(paint),
-            Drawn::Outline(_) => {}
+            Drawn::Outline(_) | Drawn::Ink(_) => {}
             Drawn::Layer { draws, .. } => collect(draws, out),
         }
     }
@@ -422,6 +434,7 @@ fn finish(cx: &mut Cx<'_, '_>, drawn: Vec<Drawn>, names: &mut impl Iterator<Item
     for drawn in drawn {
         match drawn {
             Drawn::Outline(outline) => draws.push(Draw::Outline(outline)),
+            Drawn::Ink(ink) => draws.push(Draw::Ink(ink)),
             Drawn::Layer { name, ink, draws: inner } => {
                 let inner = finish(cx, inner, names);
                 draws.push(Draw::Layer(LayerGroup { name, ink, draws: inner }));

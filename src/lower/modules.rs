@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
+use std::sync::Arc;
 
 use crate::diag::{Code, Diagnostic};
 use crate::loader::{self, LoadError, Loader};
@@ -11,7 +12,7 @@ use crate::syntax::{self, ast, kake};
 
 use super::cx::Cx;
 use super::scope::{Binding, Declared, Scope};
-use super::{draw, function, names, tone};
+use super::{draw, function, library, names, tone};
 
 /// How many files deep imports may go.
 const IMPORT_DEPTH: usize = 64;
@@ -124,10 +125,7 @@ impl Reader<'_> {
         self.files.push(File { path: path.to_owned(), document, broken, imports: Vec::new() });
         self.open.push((path.to_owned(), from));
         for (statement, text) in imports {
-            let Some(target) = loader::resolve(path, &text.value) else {
-                self.report(Code::Outside, Some(text.span), outside(&text.value), Some(ROOT_HINT.to_owned()));
-                continue;
-            };
+            let Some(target) = self.target(path, &text) else { continue };
             if let Some(imported) = self.read(&target, Some(text.span)) {
                 self.files[index].imports.push((statement, imported));
             }
@@ -136,20 +134,46 @@ impl Reader<'_> {
         Some(index)
     }
 
+    /// What the text of an import in the file at `path` names: a path from the root, or a standard library.
+    fn target(&mut self, path: &str, text: &Text) -> Option<String> {
+        if library::is_library(&text.value) {
+            return Some(text.value.clone());
+        }
+        let target = loader::resolve(path, &text.value);
+        if target.is_none() {
+            self.report(Code::Outside, Some(text.span), outside(&text.value), Some(ROOT_HINT.to_owned()));
+        }
+        target
+    }
+
+    /// The text of a standard library.
+    fn library(&mut self, path: &str, from: Option<Span>) -> Option<Arc<[u8]>> {
+        // A picture keeps the text that it was made with: later versions of the program may bring another.
+        let found = self.loader.library(path).or_else(|| library::text(path).map(|text| text.as_bytes().into()));
+        if let (None, Some(span)) = (&found, from) {
+            self.diagnostics.push(library::unknown(path, span));
+        }
+        found
+    }
+
     /// Reads one file's document, and the names that it means to declare where some of it could not be read.
     fn parse(&mut self, path: &str, from: Option<Span>) -> Option<(Document, Option<Vec<String>>)> {
         let extension = path.rsplit_once('.').map_or("", |(_, extension)| extension);
-        let is_toml = extension.eq_ignore_ascii_case("toml");
-        let bytes = match self.loader.load(path) {
-            Ok(bytes) => bytes,
-            Err(error) => {
-                let (code, message, hint) = load_error(path, &error);
-                let code = if from.is_some() && code == Code::File { Code::Import } else { code };
-                self.report(code, from, message, hint);
-                return None;
-            }
+        let is_library = from.is_some() && library::is_library(path);
+        let is_toml = extension.eq_ignore_ascii_case("toml") && !is_library;
+        let bytes = match is_library {
+            true => self.library(path, from)?,
+            false => match self.loader.load(path) {
+                Ok(bytes) => bytes,
+                Err(error) => {
+                    let (code, message, hint) = load_error(path, &error);
+                    let code = if from.is_some() && code == Code::File { Code::Import } else { code };
+                    self.report(code, from, message, hint);
+                    return None;
+                }
+            },
         };
-        if from.is_some() && !is_toml && !extension.eq_ignore_ascii_case("kake") {
+        if from.is_some() && !is_library && !is_toml && !extension.eq_ignore_ascii_case("kake") {
             let hint = "imports are scenes and libraries: `.kake` or `.toml` files".to_owned();
             self.report(Code::Import, from, format!("`{path}` is no scene"), Some(hint));
             return None;

@@ -4,7 +4,7 @@ use crate::diag::{Code, Diagnostic, grouped};
 use crate::field::Field;
 use crate::geom::{Angle, Length, Period, Point, Rect, ring_bounds, whole_steps};
 use crate::region::{FillRule, Operation, Region};
-use crate::scene::{Amount, AngleRule, GridSize, Placement, Shape, Tone};
+use crate::scene::{Amount, AngleRule, FillKind, GridSize, Ground, Placement, Shape, Tone};
 use crate::span::Span;
 
 use super::cx::Cx;
@@ -80,6 +80,10 @@ pub(super) fn check(
         return;
     }
     if let Some(diagnostic) = odd(period, region, (tone, given)) {
+        cx.report(diagnostic.note(span, "painted here"));
+        return;
+    }
+    if let Some(diagnostic) = curled(tone, given) {
         cx.report(diagnostic.note(span, "painted here"));
         return;
     }
@@ -208,6 +212,29 @@ fn odd(period: Period, region: &Region, (tone, given): (&Tone, &ToneValue)) -> O
             .label("tiles on either side of a border would be alike")
             .note(tone.place_span, "the grid")
             .hint(hint),
+    )
+}
+
+/// The error that a ground does not go round.
+fn curled(tone: &Tone, given: &ToneValue) -> Option<Diagnostic> {
+    let Some(Ground::Fill { fill, .. }) = &tone.ground else { return None };
+    let name = match &fill.kind {
+        FillKind::Arcs(_) => "arcs",
+        FillKind::Waves { .. } => "waves",
+        FillKind::Nawaami { .. } => "nawaami",
+        FillKind::Scribble { .. } => "scribble",
+        FillKind::Lines(_)
+        | FillKind::Dashes { .. }
+        | FillKind::Dots { .. }
+        | FillKind::Crosses { .. }
+        | FillKind::Motif { .. }
+        | FillKind::Solid => return None,
+    };
+    let message = format!("a ground of `{name}` does not go round a canvas that repeats");
+    Some(
+        Diagnostic::error(Code::Repeat, given.span_of("ground").unwrap_or(tone.place_span), message)
+            .label("it would break at the borders")
+            .hint("lines, dashes, dots, crosses and motifs go round, and so does `ground: nearest`, whatever the fill"),
     )
 }
 

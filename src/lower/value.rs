@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use crate::field::Field;
 use crate::region::Region;
-use crate::scene::{AngleRule, Colour, Fill, Placement, Shape};
+use crate::scene::{AngleRule, Colour, Fill, InkMark, Placement, Shape};
 use crate::span::{SourceId, Span};
 
 use super::tone::ToneValue;
@@ -35,6 +35,8 @@ pub(super) enum Value {
     Angles(Rc<AngleRule>),
     Fill(Rc<Fill>),
     Tone(Rc<ToneValue>),
+    /// Strokes and fills of a file.
+    Drawing(Rc<[InkMark]>),
     /// A word of the vocabulary of its place: `knockout`, `a4`, `none`.
     Word(&'static str),
     /// What cannot be known: it was reported already, or belongs to code that is only checked.
@@ -109,6 +111,8 @@ pub(super) enum Kind {
     Angles,
     Fill,
     Tone,
+    /// Not a type that can be named: what `ink` takes.
+    Drawing,
     /// Not a type that can be named: a word of some vocabulary.
     Word,
 }
@@ -158,6 +162,7 @@ impl Kind {
             Self::Angles => "angles",
             Self::Fill => "fill",
             Self::Tone => "tone",
+            Self::Drawing => "drawing",
             Self::Word => "word",
         }
     }
@@ -188,6 +193,7 @@ impl Kind {
             Self::Angles => "an angle rule",
             Self::Fill => "a fill",
             Self::Tone => "a tone",
+            Self::Drawing => "a drawing",
             Self::Word => "a word",
         }
     }
@@ -222,6 +228,7 @@ impl Value {
             Self::Angles(_) => Kind::Angles,
             Self::Fill(_) => Kind::Fill,
             Self::Tone(_) => Kind::Tone,
+            Self::Drawing(_) => Kind::Drawing,
             Self::Word(_) => Kind::Word,
             Self::Unknown(kind) => return *kind,
         })

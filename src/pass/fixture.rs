@@ -14,6 +14,7 @@ pub(crate) fn canvas(width: f64, height: f64) -> Canvas {
     Canvas {
         width: Length::mm(width),
         height: Length::mm(height),
+        bleed: Length::ZERO,
         pixels: [512, 512],
         dpi: 600.0,
         paper: None,

@@ -5,7 +5,9 @@
 //! agree; outer rings run clockwise on the page and holes the other way. Curves become lines within [`FLATTENING`].
 //! Nothing here depends on the machine but the numbers of SVG files, see [`svg`].
 
+pub mod chain;
 mod curve;
+pub mod flood;
 mod index;
 mod nearest;
 mod overlay;
@@ -268,9 +270,18 @@ impl Region {
     #[must_use]
     pub fn signed_distance(&self, p: Point) -> f64 {
         let segments = self.index().segments();
-        let nearest = self.0.nearest.get_or_init(|| Nearest::new(segments));
-        let distance = nearest.distance_squared(segments, p).sqrt();
+        let distance = self.nearest().distance_squared(segments, p).sqrt();
         if self.contains(p) { distance } else { -distance }
+    }
+
+    /// The direction of the outline where it is nearest to a point, in [0, pi); 0 for the empty region.
+    #[must_use]
+    pub fn tangent(&self, p: Point) -> Angle {
+        self.nearest().tangent(self.index().segments(), p).unwrap_or(Angle::ZERO)
+    }
+
+    fn nearest(&self) -> &Nearest {
+        self.0.nearest.get_or_init(|| Nearest::new(self.index().segments()))
     }
 
     fn index(&self) -> &Index {

@@ -4,7 +4,7 @@ use std::fmt;
 
 use svgtypes::{Error, PathParser, PathSegment};
 
-use super::curve::{Arc, Pen, Subpath};
+use super::curve::{Arc, CurvePen, Draw, Pen, Subpath};
 use super::{FillRule, Region};
 use crate::geom::{Angle, Length, Point, Vec2};
 
@@ -57,8 +57,25 @@ impl std::error::Error for PathError {}
 /// # Errors
 /// Says where the data is wrong.
 pub fn subpaths(data: &str, unit: Length) -> Result<Vec<Subpath>, PathError> {
-    let mut reader =
-        Reader { unit: unit.to_mm(), pen: Pen::default(), start: ORIGIN, at: ORIGIN, control: Control::None };
+    let subpaths = read(data, unit, Pen::default())?.finish();
+    check(subpaths.iter().map(|subpath| subpath.points.as_slice()))?;
+    Ok(subpaths)
+}
+
+/// The chains of cubic Béziers that path data draws, one for every `M`: each its first point, and then two control points and
+/// an end for every Bézier. A closed one ends at its first point.
+///
+/// # Errors
+/// Says where the data is wrong.
+pub fn chains(data: &str, unit: Length) -> Result<Vec<Vec<Point>>, PathError> {
+    let chains = read(data, unit, CurvePen::default())?.finish();
+    check(chains.iter().map(Vec::as_slice))?;
+    Ok(chains)
+}
+
+/// Draws all of the data with a pen.
+fn read<P: Draw>(data: &str, unit: Length, pen: P) -> Result<P, PathError> {
+    let mut reader = Reader { unit: unit.to_mm(), pen, start: ORIGIN, at: ORIGIN, control: Control::None };
     for segment in PathParser::from(data) {
         let segment = segment.map_err(|error| explain(data, &error))?;
         reader.draw(segment);
@@ -66,15 +83,19 @@ pub fn subpaths(data: &str, unit: Length) -> Result<Vec<Subpath>, PathError> {
             return Err(PathError { offset: 0, problem: PathProblem::TooLarge });
         }
     }
-    let subpaths = reader.pen.finish();
-    let is_finite = |p: &Point| p.x.is_finite() && p.y.is_finite();
-    if !subpaths.iter().flat_map(|subpath| &subpath.points).all(is_finite) {
-        return Err(PathError { offset: 0, problem: PathProblem::TooLarge });
+    Ok(reader.pen)
+}
+
+/// Checks that something was drawn, and that all of it lies on the page.
+fn check<'a>(lines: impl Iterator<Item = &'a [Point]>) -> Result<(), PathError> {
+    let mut is_empty = true;
+    for line in lines {
+        is_empty = false;
+        if !line.iter().all(|p| p.x.is_finite() && p.y.is_finite()) {
+            return Err(PathError { offset: 0, problem: PathProblem::TooLarge });
+        }
     }
-    if subpaths.is_empty() {
-        return Err(PathError { offset: 0, problem: PathProblem::Empty });
-    }
-    Ok(subpaths)
+    if is_empty { Err(PathError { offset: 0, problem: PathProblem::Empty }) } else { Ok(()) }
 }
 
 impl Region {
@@ -118,16 +139,16 @@ enum Control {
     Cubic(Point),
 }
 
-struct Reader {
+struct Reader<P> {
     unit: f64,
-    pen: Pen,
+    pen: P,
     /// Where the current line began.
     start: Point,
     at: Point,
     control: Control,
 }
 
-impl Reader {
+impl<P: Draw> Reader<P> {
     /// A point of the data on the page.
     fn place(&self, is_absolute: bool, x: f64, y: f64) -> Point {
         let origin = if is_absolute { ORIGIN } else { self.at };
@@ -256,6 +277,26 @@ mod tests {
             assert!(exact((i as f64 + 0.5) / steps).distance(pair[0].lerp(pair[1], 0.5)) < 0.005);
         }
         assert!(!drawn[0].is_closed && points.len() > 20);
+    }
+
+    #[test]
+    fn chains_are_the_curves_that_lines_stand_for() {
+        for data in
+            ["M0 0A10 10 0 0 1 20 0L3 4z", "M0 0C0 80 100-80 100 0q3 4 5 2t5-9", "M10 0A10 5 33 1 0 5 10m3 4h5v3z"]
+        {
+            let (lines, curves) = (subpaths(data, Length::mm(1.0)).unwrap(), chains(data, Length::mm(1.0)).unwrap());
+            assert_eq!(lines.len(), curves.len());
+            for (line, chain) in lines.iter().zip(&curves) {
+                assert_eq!(chain.len() % 3, 1);
+                assert_eq!(line.is_closed, chain.first() == chain.last());
+                assert_eq!(line.points.first(), chain.first());
+                let corners: Vec<Point> =
+                    line.points.iter().chain(line.is_closed.then(|| &line.points[0])).copied().collect();
+                let length: f64 = corners.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+                let exact: f64 = crate::geom::bezier::cubics(chain).map(|cubic| cubic.length().to_mm()).sum();
+                assert!((length / exact - 1.0).abs() < 2e-3, "{data}: {length} {exact}");
+            }
+        }
     }
 
     #[test]

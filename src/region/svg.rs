@@ -1,11 +1,14 @@
-//! SVG files: bytes come in, the outlines of what is filled go out.
+//! SVG files: bytes come in; the outlines of what is filled go out, the marks as they are drawn ([`ink`]), or the lines
+//! that a flood runs up against ([`lines`]).
 //!
-//! Outlines stand where the file shows them: after transforms, units, `use` and clip paths, by each path's fill rule.
-//! Strokes, text, images, masks and filters play no part, and what is hidden is left out. Nothing but the bytes is read:
-//! no pictures, fonts or files that they name. The parser works in `f32`, whose last bits differ between machines, so
-//! points are snapped to 1/1024 mm.
+//! All stand where the file shows them: after transforms, units, `use` and clip paths, by each path's fill rule. Text,
+//! images, masks and filters play no part, and what is hidden is left out. Nothing but the bytes is read: no pictures,
+//! fonts or files that they name. The parser works in `f32`, whose last bits differ between machines, so points are
+//! snapped to 1/1024 mm.
 
 mod document;
+pub mod ink;
+mod lines;
 mod read;
 #[cfg(test)]
 mod tests;
@@ -14,8 +17,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::ops::Range;
 
-use super::curve::Pen;
-use super::{FillRule, Operation, Region, Tangled, contained, overlay};
+use super::curve::{Draw, Pen};
+use super::{FillRule, Operation, Region, Subpath, Tangled, contained, overlay};
 use crate::geom::{Length, Point, Rect};
 
 /// Points lie on multiples of this many millimetres.
@@ -32,29 +35,79 @@ const STACK: usize = 64 << 20;
 pub struct SvgFile {
     /// The page's size in pixels.
     size: [f64; 2],
-    /// What is filled, in the order of drawing.
-    shapes: Vec<Shape>,
+    /// What is filled and stroked, in the order of drawing.
+    marks: Vec<Mark>,
     clips: Vec<Clip>,
-    /// Runs of `shapes` under each element that has the name.
+    /// What of the whole file is not read at all.
+    unread: BTreeSet<Lack>,
+    /// Runs of `marks` under each element that has the name.
     ids: BTreeMap<String, Vec<Range<usize>>>,
     layers: BTreeMap<String, Vec<Range<usize>>>,
     classes: BTreeMap<String, Vec<Range<usize>>>,
 }
 
-/// Something filled.
+/// Something filled or stroked.
 #[derive(Debug, Clone)]
-struct Shape {
+struct Mark {
     /// In pixels of the page.
     steps: Vec<Step>,
-    rule: FillRule,
+    kind: MarkKind,
+    /// Of gradients the mean; patterns have none.
+    colour: Option<Rgba>,
     /// The clip path it is seen through.
     clip: Option<usize>,
+    /// What of its look cannot be drawn.
+    lacks: BTreeSet<Lack>,
+}
+
+/// How a path is drawn.
+#[derive(Debug, Clone, Copy)]
+enum MarkKind {
+    Fill(FillRule),
+    Stroke {
+        /// In pixels of the page.
+        width: f64,
+        ends: Ends,
+    },
+}
+
+/// Red, green, blue and alpha in sRGB, the alpha straight.
+pub type Rgba = [u8; 4];
+
+/// How strokes end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ends {
+    /// At their last point.
+    Butt,
+    /// With half a disc beyond it.
+    Round,
+    /// With half a square beyond it.
+    Square,
+}
+
+/// Something of a file's look that is drawn otherwise than the file says, or not at all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Lack {
+    /// Drawn in its mean colour.
+    Gradient,
+    /// Left out.
+    Pattern,
+    /// Ignored.
+    Mask,
+    /// Ignored.
+    Filter,
+    /// Drawn as if there were none.
+    Blend,
+    /// Left out.
+    Picture,
+    /// Left out.
+    Text,
 }
 
 /// A clip path in one of the places where it is used.
 #[derive(Debug, Clone)]
 struct Clip {
-    shapes: Vec<Shape>,
+    shapes: Vec<Mark>,
     /// Another one, which what is seen through this one is seen through too. It stands earlier in the list.
     outer: Option<usize>,
 }
@@ -80,6 +133,8 @@ pub enum Selection<'a> {
     Layer(&'a str),
     /// All elements of this class.
     Class(&'a str),
+    /// What is filled or stroked with this colour, whatever its alpha.
+    Colour([u8; 3]),
 }
 
 /// Why a file gives no region.
@@ -119,10 +174,21 @@ pub enum SvgError {
         /// The classes that there are, in order.
         known: Vec<String>,
     },
+    /// Nothing has the colour.
+    NoSuchColour {
+        /// The colour that was asked for.
+        colour: [u8; 3],
+        /// The colours that there are, in order.
+        known: Vec<[u8; 3]>,
+    },
     /// The outlines cross too often.
     TooTangled,
     /// What was asked for is there, but nothing in it is filled.
     NotFilled,
+    /// What was asked for is there, but nothing in it is drawn.
+    NotDrawn,
+    /// What was asked for is there, but it has neither strokes nor dark fills.
+    NoLines,
 }
 
 impl fmt::Display for SvgError {
@@ -137,12 +203,23 @@ impl fmt::Display for SvgError {
             Self::NoSuchId { id, .. } => write!(f, "no element of the SVG file has the id `{id}`"),
             Self::NoSuchLayer { layer, .. } => write!(f, "no layer of the SVG file is called `{layer}`"),
             Self::NoSuchClass { class, .. } => write!(f, "no element of the SVG file has the class `{class}`"),
+            Self::NoSuchColour { colour, .. } => {
+                write!(f, "nothing in the SVG file has the colour `{}`", hex(*colour))
+            }
+            Self::NotDrawn => f.write_str("nothing is drawn here: it has neither fills nor strokes"),
+            Self::NoLines => f.write_str("there are no lines here: it has neither strokes nor dark fills"),
             Self::NotFilled => f.write_str("nothing is filled here: outlines are those of filled paths"),
         }
     }
 }
 
 impl std::error::Error for SvgError {}
+
+/// A colour as it is written in a scene.
+#[must_use]
+pub fn hex([r, g, b]: [u8; 3]) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
 
 impl From<Tangled> for SvgError {
     fn from(_: Tangled) -> Self {
@@ -175,41 +252,51 @@ impl SvgFile {
     /// # Errors
     /// Where there is no such part, nothing in it is filled, or outlines cross too often.
     pub fn region(&self, selection: Selection<'_>, fit: Option<Rect>) -> Result<Region, SvgError> {
+        let place = self.place(fit);
+        let marks = self.selected(selection)?.into_iter().filter_map(|i| self.marks.get(i));
+        let region = self.union(marks, &place)?;
+        if region.is_empty() { Err(SvgError::NotFilled) } else { Ok(region) }
+    }
+
+    /// Where the page lies.
+    fn place(&self, fit: Option<Rect>) -> Placement {
         let to_mm = Length::MM_PER_INCH / PIXELS_PER_INCH;
         let page = Rect::new(Point::new(0.0, 0.0), Point::new(self.size[0] * to_mm, self.size[1] * to_mm));
         let page = fit.map_or(page, |fit| contained(self.size[0], self.size[1], fit));
-        let place = Placement { origin: page.min, scale: page.width() / self.size[0] };
+        Placement { page, scale: page.width() / self.size[0] }
+    }
 
+    /// What those of the marks that are fills hold, as far as their clip paths show it.
+    fn union<'a>(&'a self, marks: impl Iterator<Item = &'a Mark>, place: &Placement) -> Result<Region, Tangled> {
         let mut rings: BTreeMap<Option<usize>, Vec<Vec<Point>>> = BTreeMap::new();
-        for shape in self.selected(selection)?.into_iter().filter_map(|i| self.shapes.get(i)) {
+        for mark in marks {
             // Each by its own rule; of what comes out, outlines run one way and holes the other, so that all of them
             // together are their union.
-            rings.entry(shape.clip).or_default().extend(shape.rings(&place)?);
+            rings.entry(mark.clip).or_default().extend(mark.rings(place)?);
         }
         let mut clips = BTreeMap::new();
         let mut seen = Vec::new();
         for (clip, rings) in rings {
             let region = Region::try_from_rings(rings, FillRule::NonZero)?;
             seen.push(match clip {
-                Some(clip) => region.try_combined(&self.clip(clip, &place, &mut clips)?, Operation::Intersection)?,
+                Some(clip) => region.try_combined(&self.clip(clip, place, &mut clips)?, Operation::Intersection)?,
                 None => region,
             });
         }
-        let region = match seen.as_slice() {
-            [region] => region.clone(),
+        match seen.as_slice() {
+            [region] => Ok(region.clone()),
             regions => {
                 let rings = regions.iter().flat_map(Region::polygons).flat_map(|polygon| polygon.rings().cloned());
-                Region::try_from_rings(rings.collect(), FillRule::NonZero)?
+                Region::try_from_rings(rings.collect(), FillRule::NonZero)
             }
-        };
-        if region.is_empty() { Err(SvgError::NotFilled) } else { Ok(region) }
+        }
     }
 
-    /// The numbers of the shapes, in order and each once.
+    /// The numbers of the marks, in order and each once.
     fn selected(&self, selection: Selection<'_>) -> Result<BTreeSet<usize>, SvgError> {
         let known = |names: &BTreeMap<String, Vec<Range<usize>>>| names.keys().cloned().collect();
         let ranges = match selection {
-            Selection::Whole => return Ok((0..self.shapes.len()).collect()),
+            Selection::Whole => return Ok((0..self.marks.len()).collect()),
             Selection::Id(id) => {
                 self.ids.get(id).ok_or_else(|| SvgError::NoSuchId { id: id.into(), known: known(&self.ids) })?
             }
@@ -221,9 +308,22 @@ impl SvgFile {
                 .classes
                 .get(class)
                 .ok_or_else(|| SvgError::NoSuchClass { class: class.into(), known: known(&self.classes) })?,
+            Selection::Colour(colour) => return self.coloured(colour),
         };
         // An element may lie within another of the same class.
         Ok(ranges.iter().cloned().flatten().collect())
+    }
+
+    /// The numbers of the marks of a colour, in order.
+    fn coloured(&self, colour: [u8; 3]) -> Result<BTreeSet<usize>, SvgError> {
+        let own = |mark: &Mark| mark.colour.map(|[r, g, b, _]| [r, g, b]);
+        let found: BTreeSet<usize> =
+            self.marks.iter().enumerate().filter(|(_, mark)| own(mark) == Some(colour)).map(|(i, _)| i).collect();
+        if found.is_empty() {
+            let known: BTreeSet<[u8; 3]> = self.marks.iter().filter_map(own).collect();
+            return Err(SvgError::NoSuchColour { colour, known: known.into_iter().collect() });
+        }
+        Ok(found)
     }
 
     /// The area of a clip path and all those outside it. The ones found are kept in `found`.
@@ -256,15 +356,38 @@ impl SvgFile {
 
 /// Where the page of a file lies.
 struct Placement {
-    origin: Point,
+    page: Rect,
     /// Millimetres for a pixel.
     scale: f64,
 }
 
-impl Shape {
-    /// Its area on the page as rings that do not cross.
+impl Placement {
+    fn point(&self, p: Point) -> Point {
+        self.page.min + (p - Point::new(0.0, 0.0)) * self.scale
+    }
+}
+
+/// On the grid of points that are read.
+fn snapped(p: Point) -> Point {
+    let snap = |v: f64| (v / SNAP).round() * SNAP;
+    Point::new(snap(p.x), snap(p.y))
+}
+
+impl Mark {
+    /// Its area on the page as rings that do not cross; none if it is a stroke.
     fn rings(&self, place: &Placement) -> Result<Vec<Vec<Point>>, Tangled> {
-        let at = |p: Point| place.origin + (p - Point::new(0.0, 0.0)) * place.scale;
+        let MarkKind::Fill(rule) = self.kind else { return Ok(Vec::new()) };
+        let rings: Vec<Vec<Point>> = self.flattened(place).into_iter().map(|subpath| subpath.points).collect();
+        overlay::check(&rings)?;
+        Ok(overlay::resolve(&rings, rule)
+            .into_iter()
+            .flat_map(|polygon| std::iter::once(polygon.outer).chain(polygon.holes))
+            .collect())
+    }
+
+    /// Its path on the page as straight pieces.
+    fn flattened(&self, place: &Placement) -> Vec<Subpath> {
+        let at = |p: Point| place.point(p);
         let mut pen = Pen::default();
         for step in &self.steps {
             match *step {
@@ -275,16 +398,10 @@ impl Shape {
                 Step::Close => pen.close(),
             }
         }
-        let snap = |v: f64| (v / SNAP).round() * SNAP;
-        let rings: Vec<Vec<Point>> = pen
-            .finish()
-            .into_iter()
-            .map(|subpath| subpath.points.into_iter().map(|p| Point::new(snap(p.x), snap(p.y))).collect())
-            .collect();
-        overlay::check(&rings)?;
-        Ok(overlay::resolve(&rings, self.rule)
-            .into_iter()
-            .flat_map(|polygon| std::iter::once(polygon.outer).chain(polygon.holes))
-            .collect())
+        let mut subpaths = pen.finish();
+        for subpath in &mut subpaths {
+            subpath.points.iter_mut().for_each(|p| *p = snapped(*p));
+        }
+        subpaths
     }
 }

@@ -232,7 +232,8 @@ fn drawing() -> BoxedStrategy<StatementKind> {
             name,
             seed
         }),
-        (expr(), expr()).prop_map(|(region, pen)| StatementKind::Outline { region, pen }),
+        (expr(), of(expr())).prop_map(|(region, pen)| StatementKind::Outline { region, pen }),
+        expr().prop_map(|drawing| StatementKind::Ink { drawing }),
     ];
     leaf.prop_recursive(3, 8, 2, |inner| {
         let inner = inner.boxed();

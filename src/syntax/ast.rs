@@ -117,7 +117,12 @@ pub enum StatementKind {
         /// Whose outline.
         region: Expr,
         /// The stroke's width.
-        pen: Expr,
+        pen: Option<Expr>,
+    },
+    /// `ink DRAWING`
+    Ink {
+        /// The drawing, a call of `svg`.
+        drawing: Expr,
     },
     /// `layer "name" ink COLOUR { … }`
     Layer {

@@ -37,6 +37,7 @@ pub const KEYWORDS: &[&str] = &[
     "fn",
     "paint",
     "outline",
+    "ink",
     "layer",
     "for",
     "if",

@@ -1,11 +1,16 @@
 //! The vocabulary: every name that the language brings with it, and the places where each is known.
 
+mod directions;
 mod fields;
 mod fills;
+mod gradients;
+mod images;
 mod mathematics;
 mod placements;
 mod regions;
 mod shapes;
+
+pub(super) use fills::DEFAULT_PEN;
 
 use crate::scene::Colour;
 use crate::span::Span;
@@ -18,21 +23,19 @@ use super::value::{FieldUnit, Kind, TypedField, Value};
 use crate::field::{Field, Node};
 
 /// Every table of signatures with the kind of place that it belongs to.
-const TABLES: [(Option<Kind>, &[Signature]); 7] = [
+const TABLES: [(Option<Kind>, &[Signature]); 8] = [
     (Some(Kind::Region), regions::SIGNATURES),
     (Some(Kind::Field), fields::SIGNATURES),
     (Some(Kind::Placement), placements::SIGNATURES),
     (Some(Kind::Angles), placements::ANGLES),
     (Some(Kind::Shape), shapes::SIGNATURES),
     (Some(Kind::Fill), fills::SIGNATURES),
+    (Some(Kind::Drawing), regions::DRAWINGS),
     (None, mathematics::SIGNATURES),
 ];
 
 /// Names of the language that this version does not draw.
-const LATER: [&str; 14] = [
-    "arcs", "coloured", "contour", "crosses", "flood", "flow", "hand", "motif", "nawaami", "scribble", "steps",
-    "stops", "tuned", "waves",
-];
+const LATER: [&str; 3] = ["coloured", "hand", "tuned"];
 
 /// Whether a name belongs to the language but not to this version.
 pub(super) fn is_later(name: &str) -> bool {
@@ -83,7 +86,8 @@ pub(super) fn name(cx: &mut Cx<'_, '_>, name: &str, span: Span, slot: Slot) -> O
     match (name, slot.kind) {
         ("pi", None | Some(Kind::Number | Kind::Field)) => return Some(Value::Number(std::f64::consts::PI)),
         ("tau", None | Some(Kind::Number | Kind::Field)) => return Some(Value::Number(std::f64::consts::TAU)),
-        ("canvas", None | Some(Kind::Region | Kind::Box)) => {
+        // Among operands of fields too: some take the page, and others can say that it is a region.
+        ("canvas", None | Some(Kind::Region | Kind::Box | Kind::Field)) => {
             let page = cx.page.clone();
             return Some(page.map_or(Value::Unknown(Some(Kind::Region)), Value::Region));
         }

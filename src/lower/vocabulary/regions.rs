@@ -1,9 +1,9 @@
 //! Regions.
 
 use crate::geom::{Angle, Length, Point, Vec2};
-use crate::region::{PathProblem, Region, Tangled};
+use crate::region::{PathError, PathProblem, Region, Tangled};
 
-use super::super::call::{Call, Signature, later, optional, required};
+use super::super::call::{Call, Param, Signature, optional, required};
 use super::super::convert::{Slot, coerce};
 use super::super::files;
 use super::super::value::{Kind, Value};
@@ -14,6 +14,26 @@ const POINT: Slot = Slot::of(Kind::Point);
 const LENGTH: Slot = Slot::of(Kind::Length);
 const STRING: Slot = Slot::of(Kind::String);
 const BOX: Slot = Slot::of(Kind::Box);
+const COLOUR: Slot = Slot::of(Kind::Colour);
+const BORDER: Slot = Slot::words(&["open", "wall"]);
+
+/// What can be inked.
+pub(super) const DRAWINGS: &[Signature] = &[Signature {
+    name: "svg",
+    result: Some(Kind::Drawing),
+    params: SVG,
+    build: |call| Some(Value::Drawing(files::ink(call)?.into())),
+}];
+
+/// A file and the part of it that is meant.
+const SVG: &[Param] = &[
+    required("file", STRING),
+    optional("id", STRING),
+    optional("fit", BOX),
+    optional("layer", STRING),
+    optional("class", STRING),
+    optional("colour", COLOUR),
+];
 
 pub(super) const SIGNATURES: &[Signature] = &[
     Signature {
@@ -56,18 +76,24 @@ pub(super) const SIGNATURES: &[Signature] = &[
     Signature {
         name: "svg",
         result: Some(Kind::Region),
+        params: SVG,
+        build: |call| not_empty(call, "the SVG file's filled shapes hold nothing", files::svg),
+    },
+    Signature {
+        name: "flood",
+        result: Some(Kind::Region),
         params: &[
             required("file", STRING),
-            optional("id", STRING),
+            required("at", POINT),
+            optional("close", LENGTH),
+            optional("border", BORDER),
             optional("fit", BOX),
+            optional("id", STRING),
             optional("layer", STRING),
             optional("class", STRING),
-            later("colour"),
+            optional("colour", COLOUR),
         ],
-        build: |call| {
-            let fit = if call.has("fit") { Some(call.area("fit")?) } else { None };
-            not_empty(call, "the SVG file's filled shapes hold nothing", |call| files::svg(call, fit))
-        },
+        build: |call| not_empty(call, "the flood fills nothing", files::flood),
     },
     Signature {
         name: "mask",
@@ -203,23 +229,26 @@ fn path(call: &mut Call<'_, '_, '_>) -> Option<Value> {
             call.cx.report_value(diagnostic.hint(files::SIMPLIFY));
             None
         }
-        Err(error) => {
-            let whole = call.span_of("data");
-            let mut span = whole;
-            // Where the string is written without escapes its characters stand where the path's do.
-            let length = u32::try_from(data.value.len()).unwrap_or(u32::MAX);
-            if let Ok(offset) = u32::try_from(error.offset)
-                && offset < length
-                && whole.end - whole.start == length.saturating_add(2)
-            {
-                span.start = whole.start + 1 + offset;
-                span.end = span.start + 1;
-            }
-            let diagnostic = Diagnostic::error(Code::Path, span, error.to_string());
-            call.cx.report_value(diagnostic.hint("path data looks like `M 0 0 L 10 0 L 10 10 Z`"));
-            None
-        }
+        Err(error) => path_error(call, &data.value, &error),
     })
+}
+
+/// Says what is wrong with the path data of the argument `data`.
+pub(super) fn path_error<T>(call: &mut Call<'_, '_, '_>, data: &str, error: &PathError) -> Option<T> {
+    let whole = call.span_of("data");
+    let mut span = whole;
+    // Where the string is written without escapes its characters stand where the path's do.
+    let length = u32::try_from(data.len()).unwrap_or(u32::MAX);
+    if let Ok(offset) = u32::try_from(error.offset)
+        && offset < length
+        && whole.end - whole.start == length.saturating_add(2)
+    {
+        span.start = whole.start + 1 + offset;
+        span.end = span.start + 1;
+    }
+    let diagnostic = Diagnostic::error(Code::Path, span, error.to_string());
+    call.cx.report_value(diagnostic.hint("path data looks like `M 0 0 L 10 0 L 10 10 Z`"));
+    None
 }
 
 fn mask(call: &mut Call<'_, '_, '_>) -> Option<Value> {

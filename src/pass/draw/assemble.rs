@@ -2,8 +2,10 @@
 
 use crate::diag::{Code, Diagnostic, grouped};
 use crate::drawing::{Drawing, Layer, Page, Strokes};
+use crate::geom::Rect;
 use crate::pass::cut;
-use crate::scene::{Canvas, Cap, Colour, Draw, Limits, Outline, Over, Paint, Scene};
+use crate::region::{Operation, Region, chain};
+use crate::scene::{Canvas, Cap, Colour, Draw, Ink, InkMark, InkShape, Limits, Outline, Over, Paint, Scene};
 use crate::span::Span;
 
 use super::budget::{Budget, Exceeded};
@@ -18,6 +20,8 @@ pub enum Item<'a> {
     Paint(&'a Paint),
     /// A region's outline.
     Outline(&'a Outline),
+    /// Strokes and fills of a file.
+    Ink(&'a Ink),
 }
 
 /// Where in the scene something is drawn.
@@ -43,6 +47,7 @@ fn collect<'a>(draws: &'a [Draw], setting: &Setting, items: &mut Vec<(Setting, I
         match draw {
             Draw::Paint(paint) => items.push((setting.clone(), Item::Paint(paint))),
             Draw::Outline(outline) => items.push((setting.clone(), Item::Outline(outline))),
+            Draw::Ink(ink) => items.push((setting.clone(), Item::Ink(ink))),
             Draw::Layer(group) => {
                 let mut inner = setting.clone();
                 inner.groups.push(group.name.clone());
@@ -127,6 +132,25 @@ impl<'a> Assembly<'a> {
         self.add(vec![layer], outline.span)
     }
 
+    /// Draws the strokes and fills of a file on top of what is there, as far as they lie on the canvas. A run of marks of
+    /// one colour is one layer; what is not opaque is one by itself, so that it shows what lies under it.
+    ///
+    /// # Errors
+    /// If the drawing comes to have more marks than the limit allows.
+    pub fn ink(&mut self, ink: &Ink, setting: &Setting) -> Result<(), Diagnostic> {
+        let mut layers: Vec<Layer> = Vec::new();
+        for mark in &ink.marks {
+            let mut layer = Layer::new(setting.groups.clone(), "ink".to_owned(), mark.colour);
+            put(mark, self.canvas.bounds(), &mut layer);
+            match layers.last_mut() {
+                Some(last) if mark.colour.a == 255 && last.ink == mark.colour => join(last, layer),
+                _ if layer.marks() > 0 => layers.push(layer),
+                _ => {}
+            }
+        }
+        self.add(layers, ink.span)
+    }
+
     fn add(&mut self, layers: Vec<Layer>, span: Span) -> Result<(), Diagnostic> {
         self.marks += layers.iter().map(Layer::marks).sum::<u64>();
         self.layers.extend(layers);
@@ -143,11 +167,55 @@ impl<'a> Assembly<'a> {
         let page = Page {
             width: canvas.width,
             height: canvas.height,
+            bleed: canvas.bleed,
             pixels: canvas.pixels,
             dpi: canvas.dpi,
             paper: canvas.paper,
             depth: canvas.depth,
         };
         Drawing { page, layers: self.layers }
+    }
+}
+
+/// Draws what of a mark lies on the sheet.
+fn put(mark: &InkMark, sheet: Rect, layer: &mut Layer) {
+    match &mark.shape {
+        InkShape::Area(area) => {
+            let is_whole = sheet.contains(area.bounds().min) && sheet.contains(area.bounds().max);
+            // An area that crosses the border too often to be cut lies beyond it as it is.
+            let cut =
+                if is_whole { None } else { area.try_combined(&Region::rect(sheet), Operation::Intersection).ok() };
+            let rings =
+                |area: &Region| area.polygons().iter().map(|polygon| polygon.rings().cloned().collect()).collect();
+            layer.areas = rings(cut.as_ref().unwrap_or(area));
+        }
+        InkShape::Strokes { pen, cap, chains } => {
+            // Cut beyond the border, where no end of a stroke is seen.
+            let seen = Region::rect(sheet.grown(pen.to_mm()));
+            let mut strokes = Strokes::new(*pen, *cap);
+            for piece in chains.iter().flat_map(|chain| chain::clipped(chain, &seen)) {
+                match chain::straight(&piece) {
+                    Some(corners) => strokes.polylines.push(corners),
+                    None => strokes.curves.push(&piece),
+                }
+            }
+            if !strokes.polylines.is_empty() || !strokes.curves.is_empty() {
+                layer.strokes.push(strokes);
+            }
+        }
+    }
+}
+
+/// Adds the marks of one layer to another of the same colour.
+fn join(layer: &mut Layer, other: Layer) {
+    layer.areas.extend(other.areas);
+    for strokes in other.strokes {
+        match layer.strokes.iter_mut().find(|known| (known.pen, known.cap) == (strokes.pen, strokes.cap)) {
+            Some(known) => {
+                known.polylines.extend(strokes.polylines);
+                known.curves.append(&strokes.curves);
+            }
+            None => layer.strokes.push(strokes),
+        }
     }
 }

@@ -28,6 +28,12 @@ pub(super) const PROFILE: u64 = 4;
 /// What a dot costs, besides the tiles that may hide it.
 pub(super) const DOT: u64 = 4;
 
+/// What it costs to make a curve, besides the tiles that may hide it.
+pub(super) const CURVE: u64 = 4;
+
+/// What a curve costs that is drawn: in memory it is a mark.
+pub(super) const DRAWN: u64 = WORK_PER_MARK;
+
 /// What the value of a field costs.
 pub(super) const SAMPLE: u64 = 4;
 

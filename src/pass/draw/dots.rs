@@ -7,24 +7,24 @@ use crate::scene::{Blend, Hatch};
 use super::budget::{BANK, DOT, Exceeded, LINE};
 use super::job::{Job, Layer, Scratch};
 use super::lattice::{Lattice, is_drawn};
-use super::lines::spread;
+use super::lines::interleaved;
 use super::palette::Batch;
 
 /// How dots are set.
 pub(super) struct Dotting<'a> {
     pub(super) hatch: &'a Hatch,
-    spacing: f64,
+    spacing: Length,
     pub(super) radius: f64,
 }
 
 impl<'a> Dotting<'a> {
     pub(super) fn new(hatch: &'a Hatch, spacing: Length, radius: Length) -> Self {
-        Self { hatch, spacing: spacing.to_mm(), radius: radius.to_mm() }
+        Self { hatch, spacing, radius: radius.to_mm() }
     }
 
     /// Places along lines at the exact spacing, one of them, or one that would continue them, at `middle`.
     pub(super) fn along(&self, range: (f64, f64), middle: f64) -> Lattice {
-        Lattice::cell(range, middle, self.spacing)
+        Lattice::cell(range, middle, self.spacing.to_mm())
     }
 }
 
@@ -36,7 +36,7 @@ pub(super) fn draw(
     scratch: &mut Scratch,
     out: &mut Batch,
 ) -> Result<(), Exceeded> {
-    let (lines, along) = lattices(job, layer, dotting, scratch);
+    let (lines, along) = interleaved(job, layer, dotting.hatch, dotting.spacing, scratch);
     let radius = dotting.radius;
     let inner = |(low, high): (f64, f64)| (low + radius, high - radius);
     let lines = lines.over(inner(scratch.area.across()));
@@ -71,28 +71,6 @@ pub(super) fn draw(
         }
     }
     Ok(())
-}
-
-/// Where lines lie, and dots along them, so that no dot falls on one of an earlier layer.
-///
-/// All layers stand on one lattice of half the pitch and half the spacing, turned with the tile, of which each takes a
-/// quarter: the second the middles of the first one's fields, the third and fourth the middles of their sides. The second
-/// layer makes the dots of the first denser by the square root of two and turns their lattice by 45 degrees, where pitch
-/// and spacing are equal; with the fourth it is square again, at half the distance. Tone grows evenly with every layer.
-fn lattices(job: &Job<'_>, layer: &Layer<'_>, dotting: &Dotting<'_>, scratch: &mut Scratch) -> (Lattice, Lattice) {
-    let lines = spread(job, layer, dotting.hatch, scratch);
-    let along = scratch.whole.along();
-    let row = if job.paint.tone.shape.is_cell() {
-        dotting.along(along, 0.0)
-    } else {
-        Lattice::stamp(along, dotting.spacing, 0.5, 1)
-    };
-    match layer.number {
-        0 | 1 => (lines, row),
-        2 => (lines.moved(0.5), row.moved(0.5)),
-        3 => (lines, row.moved(0.5)),
-        _ => (lines.moved(0.5), row),
-    }
 }
 
 /// Whether a dot lies wholly in the layer's area and in the region and clear of all covers.

@@ -43,6 +43,19 @@ impl<'a> Bank<'a> {
         self.region.signed_distance(centre) >= radius - TOUCH
     }
 
+    /// The distance of a place from the outline in millimetres, positive inside.
+    pub(super) fn distance(&self, place: Point) -> f64 {
+        self.region.signed_distance(place)
+    }
+
+    /// Whether a straight line lies in the region; what it reaches over the outline at its ends by a touch is not counted.
+    pub(super) fn holds_line(&self, a: Point, b: Point, spans: &mut Vec<(f64, f64)>) -> bool {
+        spans.clear();
+        self.region.clip_line(a, b, spans);
+        let touch = TOUCH / a.distance(b);
+        matches!(spans.as_slice(), [(start, end)] if *start <= touch && *end >= 1.0 - touch)
+    }
+
     /// Keeps the ranges of the line at `v` along which a stroke lies in the region in its whole width, caps included.
     ///
     /// Between two neighbouring corners the outline is straight, so that what a line across the stroke's width meets is

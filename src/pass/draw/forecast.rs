@@ -2,23 +2,29 @@
 
 use rayon::prelude::*;
 
-use crate::geom::ring_area;
-use crate::scene::FillKind;
+use crate::geom::{Length, chain, ring_area};
+use crate::scene::{FillKind, Hatch};
 
-use super::budget::{DOT, Exceeded, LINE};
+use super::budget::{CURVE, DOT, Exceeded, LINE};
 use super::job::Job;
 
-/// Looks, and places of lines and dots.
+/// Looks, and places of lines, dots and curves.
 #[derive(Default, Clone, Copy)]
 struct Cost {
     overlap: u128,
     lines: u128,
     dots: u128,
+    curves: u128,
 }
 
 impl Cost {
     fn plus(self, other: Self) -> Self {
-        Self { overlap: self.overlap + other.overlap, lines: self.lines + other.lines, dots: self.dots + other.dots }
+        Self {
+            overlap: self.overlap + other.overlap,
+            lines: self.lines + other.lines,
+            dots: self.dots + other.dots,
+            curves: self.curves + other.curves,
+        }
     }
 }
 
@@ -27,12 +33,15 @@ pub(super) fn check(job: &Job<'_>) -> Result<(), Exceeded> {
     let tiles = (0..job.sites.own()).into_par_iter().filter(|&tile| job.tiles.is_drawn(tile));
     let cost = tiles.map(|tile| cost(job, tile)).reduce(Cost::default, Cost::plus);
     let (lines, dots) = (cost.lines * u128::from(LINE), cost.dots * u128::from(DOT));
-    if cost.overlap + lines + dots <= u128::from(job.budget.most_work()) {
+    let curves = cost.curves * u128::from(CURVE);
+    if cost.overlap + lines + dots + curves <= u128::from(job.budget.most_work()) {
         return Ok(());
     }
     let whole = |count: u128| u64::try_from(count).unwrap_or(u64::MAX);
-    Err(if cost.overlap > lines + dots {
+    Err(if cost.overlap > lines + dots + curves {
         overlap(job)
+    } else if curves > lines.max(dots) {
+        Exceeded::Places { what: "curves", count: whole(cost.curves) }
     } else if lines > dots {
         Exceeded::Places { what: "lines", count: whole(cost.lines) }
     } else {
@@ -51,13 +60,25 @@ fn cost(job: &Job<'_>, tile: usize) -> Cost {
         let share = if number <= layers.full { 1.0 } else { layers.part };
         // A tile is nowhere narrower than its area over its diameter. Casts of what is too great give the greatest number.
         let lines = |pitch: f64| area / (2.0 * radius) / pitch;
+        let places =
+            |hatch: &Hatch, spacing: Length| u128::from((share * area / hatch.pitch.to_mm() / spacing.to_mm()) as u64);
         match &fills[usize::from(number - 1).min(fills.len() - 1)].kind {
             FillKind::Lines(hatch) | FillKind::Dashes { hatch, .. } => {
                 cost.lines += u128::from(lines(hatch.pitch.to_mm()) as u64);
             }
             FillKind::Dots { hatch, spacing, .. } => {
-                cost.dots += u128::from((share * area / hatch.pitch.to_mm() / spacing.to_mm()) as u64);
+                cost.dots += places(hatch, *spacing);
                 cost.lines += u128::from(lines(hatch.pitch.to_mm()) as u64);
+            }
+            FillKind::Crosses { hatch, spacing, .. } => cost.dots += 2 * places(hatch, *spacing),
+            FillKind::Arcs(hatch) => cost.curves += 4 * u128::from(lines(hatch.pitch.to_mm()) as u64),
+            FillKind::Waves { hatch, swing } | FillKind::Nawaami { hatch, swing } => {
+                cost.curves += places(hatch, swing.wavelength / 2.0);
+            }
+            FillKind::Scribble { hatch, spacing, .. } => cost.curves += 2 * places(hatch, *spacing),
+            FillKind::Motif { hatch, spacing, figure } => {
+                let curves: usize = figure.0.iter().map(|strokes| chain::count(strokes)).sum();
+                cost.curves = cost.curves.saturating_add(places(hatch, *spacing).saturating_mul(curves as u128));
             }
             FillKind::Solid => {}
         }

@@ -7,24 +7,31 @@
 
 use rayon::prelude::*;
 
+use crate::geom::bezier::cubics;
 use crate::geom::clip::{Frame, Profile, convex_clearance};
-use crate::geom::{Angle, Length, Point, Vec2, ring_bounds};
+use crate::geom::{Angle, Length, Point, Vec2, chain, ring_bounds};
 use crate::pass::cut::voronoi::Cells;
 use crate::pass::link;
 use crate::region::{FillRule, Region};
 use crate::scene::{Canvas, Fill, FillKind, Ground, Hatch, Link, Paint, Shape};
 use crate::stage::{Graph, Sites, Tiling};
 
+use super::arcs::Arcs;
 use super::budget::{BANK, DOT, Exceeded, LINE, PROFILE};
+use super::crosses::{ARMS, Crossing, draw_arm};
+use super::curves::{Course, clip, disc, emit, trace};
 use super::dashes::Dashes;
 use super::dots::Dotting;
 use super::edge::{Bank, Contact};
 use super::job::{Job, Piece, Scratch};
 use super::lattice::Lattice;
 use super::lines::Line;
+use super::motif::Motif;
 use super::palette::Batch;
+use super::scribble::Scribble;
 use super::solid;
 use super::torus::overhang;
+use super::waves::Waves;
 use super::weave::{Along, Bond, Weave};
 
 /// Lines that one thread draws at a time; they also make a bundle.
@@ -127,10 +134,17 @@ fn even(job: &Job<'_>, canvas: &Canvas, fill: &Fill, angle: Angle) -> Result<Vec
     let weave = Weave::new(period, angle.unit(), hatch.pitch);
     let mut fill = fill.clone();
     match &mut fill.kind {
-        FillKind::Lines(hatch) | FillKind::Dashes { hatch, .. } | FillKind::Dots { hatch, .. } => {
-            hatch.pitch = Length::mm(weave.pitch);
-        }
-        FillKind::Solid => {}
+        FillKind::Lines(hatch)
+        | FillKind::Dashes { hatch, .. }
+        | FillKind::Dots { hatch, .. }
+        | FillKind::Crosses { hatch, .. }
+        | FillKind::Motif { hatch, .. } => hatch.pitch = Length::mm(weave.pitch),
+        // Lowering lets none of the curves come here that do not go round.
+        FillKind::Arcs(_)
+        | FillKind::Waves { .. }
+        | FillKind::Nawaami { .. }
+        | FillKind::Scribble { .. }
+        | FillKind::Solid => {}
     }
     even_over(&job, canvas, &fill, (weave.along, Some(&weave)))
 }
@@ -141,6 +155,15 @@ pub(super) fn beyond(fill: &Fill) -> f64 {
     match &fill.kind {
         FillKind::Lines(hatch) | FillKind::Dashes { hatch, .. } => overhang(hatch.pen) + hatch.shortest.to_mm(),
         FillKind::Dots { radius, .. } => 2.0 * radius.to_mm(),
+        FillKind::Crosses { hatch, size, .. } => overhang(hatch.pen) + hatch.shortest.to_mm() + size.to_mm(),
+        FillKind::Motif { hatch, spacing, figure } => {
+            let reach = Motif { hatch, spacing: *spacing, figure }.reach();
+            overhang(hatch.pen) + hatch.shortest.to_mm() + reach * 2.0
+        }
+        FillKind::Arcs(hatch)
+        | FillKind::Waves { hatch, .. }
+        | FillKind::Nawaami { hatch, .. }
+        | FillKind::Scribble { hatch, .. } => overhang(hatch.pen) + hatch.shortest.to_mm(),
         FillKind::Solid => BLEED,
     }
 }
@@ -159,6 +182,10 @@ fn even_over(
     let mut region = Profile::default();
     region.set(&job.bank.region().bounds().corners(), &frame);
     let plane = Plane { job, frame, region };
+    let rows = |spacing: Length| match weave {
+        Some(weave) => weave.along(spacing, Bond::Rows),
+        None => Along { step: spacing.to_mm(), drift: 0.0 },
+    };
     match &fill.kind {
         FillKind::Lines(hatch) => plane.lines(hatch, None),
         FillKind::Dashes { hatch, dash, gap } => {
@@ -170,11 +197,24 @@ fn even_over(
             plane.lines(hatch, Some(&dashes))
         }
         FillKind::Dots { hatch, spacing, radius } => {
-            let along = match weave {
-                Some(weave) => weave.along(*spacing, Bond::Rows),
-                None => Along { step: spacing.to_mm(), drift: 0.0 },
-            };
-            plane.dots(&Dotting::new(hatch, Length::mm(along.step), *radius), along.drift)
+            let Along { step, drift } = rows(*spacing);
+            plane.dots(&Dotting::new(hatch, Length::mm(step), *radius), drift)
+        }
+        FillKind::Crosses { hatch, spacing, size } => {
+            let Along { step, drift } = rows(*spacing);
+            plane.crosses(&Crossing { hatch, spacing: Length::mm(step), size: *size }, drift)
+        }
+        FillKind::Arcs(hatch) => plane.curves(hatch, &Arcs { centre: Point::default() }, plane.rings()),
+        FillKind::Waves { hatch, swing } | FillKind::Nawaami { hatch, swing } => {
+            plane.curves(hatch, &Waves::new(swing), plane.region.across())
+        }
+        FillKind::Scribble { hatch, loops, spacing } => {
+            let scribble = Scribble::new(job.paint, usize::MAX, 0, *loops, *spacing);
+            plane.curves(hatch, &scribble, plane.region.across())
+        }
+        FillKind::Motif { hatch, spacing, figure } => {
+            let Along { step, drift } = rows(*spacing);
+            plane.motif(&Motif { hatch, spacing: Length::mm(step), figure }, drift)
         }
         FillKind::Solid => {
             let drawn = (0..job.tiles.len()).filter(|&tile| job.tiles.is_drawn(tile));
@@ -201,9 +241,10 @@ impl Plane<'_> {
     fn in_bands(
         &self,
         pitch: Length,
+        across: (f64, f64),
         draw: impl Fn(&mut Scratch, &[(i64, f64)], &mut Batch) -> Result<(), Exceeded> + Sync,
     ) -> Result<Vec<Vec<Batch>>, Exceeded> {
-        let lattice = Lattice::cell(self.region.across(), 0.0, pitch.to_mm());
+        let lattice = Lattice::cell(across, 0.0, pitch.to_mm());
         self.job.budget.work(lattice.count() * (LINE + BANK) as f64)?;
         if lattice.count() > self.job.budget.limit() as f64 {
             return Err(Exceeded::Marks);
@@ -227,7 +268,7 @@ impl Plane<'_> {
     fn lines(&self, hatch: &Hatch, dashes: Option<&Dashes>) -> Result<Vec<Vec<Batch>>, Exceeded> {
         let ranges = self.tile_ranges();
         let along = self.region.along();
-        self.in_bands(hatch.pitch, |scratch, band, out| {
+        self.in_bands(hatch.pitch, self.region.across(), |scratch, band, out| {
             let hidden = self.hidden(band, &ranges, scratch)?;
             for (&(number, v), mut hidden) in band.iter().zip(hidden) {
                 // From the end to the start, so that what is left lies as one range before each.
@@ -252,7 +293,7 @@ impl Plane<'_> {
         if count * (DOT + BANK) as f64 > self.job.budget.most_work() as f64 {
             return Err(Exceeded::Places { what: "dots of ground", count: count as u64 });
         }
-        self.in_bands(dotting.hatch.pitch, |scratch, band, out| {
+        self.in_bands(dotting.hatch.pitch, self.region.across(), |scratch, band, out| {
             for &(number, v) in band {
                 self.job.budget.work(row.count() * (DOT + BANK) as f64)?;
                 let start = out.dots.len();
@@ -271,6 +312,131 @@ impl Plane<'_> {
             }
             Ok(())
         })
+    }
+
+    /// The range of radii about the frame's origin that come into the box around the region.
+    fn rings(&self) -> (f64, f64) {
+        let ((left, right), (top, bottom)) = (self.region.along(), self.region.across());
+        let away = |(low, high): (f64, f64)| (low.max(-high).max(0.0), high.max(-low));
+        let ((near_u, far_u), (near_v, far_v)) = (away((left, right)), away((top, bottom)));
+        (Vec2::new(near_u, near_v).length(), Vec2::new(far_u, far_v).length())
+    }
+
+    fn curves(
+        &self,
+        hatch: &Hatch,
+        course: &impl Course,
+        (low, high): (f64, f64),
+    ) -> Result<Vec<Vec<Batch>>, Exceeded> {
+        let along = self.region.along();
+        let reach = course.reach();
+        self.in_bands(hatch.pitch, (low - reach, high + reach), |scratch, band, out| {
+            for &line in band {
+                trace(self.job, course, line, along, &mut scratch.curves.chain)?;
+                self.stroke(hatch, line.0.rem_euclid(2) == 1, scratch, out)?;
+            }
+            Ok(())
+        })
+    }
+
+    /// Figures that lie further back by `drift` on every line a millimetre across.
+    fn motif(&self, motif: &Motif<'_>, drift: f64) -> Result<Vec<Vec<Batch>>, Exceeded> {
+        let (reach, cost) = (motif.reach(), motif.cost());
+        let grown = |(low, high): (f64, f64)| (low - reach, high + reach);
+        let row = |middle: f64| Lattice::cell(grown(self.region.along()), middle, motif.spacing.to_mm());
+        self.in_bands(motif.hatch.pitch, grown(self.region.across()), |scratch, band, out| {
+            for &(_, v) in band {
+                let row = row(-v * drift);
+                self.job.budget.work(row.count() * (cost + BANK) as f64)?;
+                for (_, u) in row.places() {
+                    for strokes in motif.figure.0.iter() {
+                        scratch.curves.chain.clear();
+                        scratch.curves.chain.extend(strokes.iter().map(|&p| p + Vec2::new(u, v)));
+                        self.stroke(motif.hatch, false, scratch, out)?;
+                    }
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// Draws what no tile lies on of the stroke in `scratch`.
+    fn stroke(
+        &self,
+        hatch: &Hatch,
+        is_backwards: bool,
+        scratch: &mut Scratch,
+        out: &mut Batch,
+    ) -> Result<(), Exceeded> {
+        let Scratch { curves, looks, .. } = scratch;
+        curves.ranges.reset(0.0, chain::count(&curves.chain) as f64);
+        let region = self.job.bank.region().bounds();
+        for (number, cubic) in cubics(&curves.chain).enumerate() {
+            let page = cubic.map(|p| self.frame.page(p.x, p.y)).bounds();
+            if !page.touches(&region) {
+                curves.ranges.subtract(number as f64, number as f64 + 1.0);
+                continue;
+            }
+            let (middle, within) = disc(&page);
+            self.job.budget.look(looks, self.job.nearby.candidates(middle, within) * PROFILE)?;
+            let (ranges, cutout, found) = (&mut curves.ranges, &mut curves.area, &mut curves.found);
+            self.job.nearby.near(middle, within, |tile| {
+                cutout.set(self.job.nearby.figure(tile), &self.frame);
+                cutout.cut(&cubic.0, number, found);
+                found.iter().for_each(|&(start, end)| ranges.subtract(start, end));
+            });
+        }
+        clip(self.job, &self.frame, hatch, scratch)?;
+        emit(self.job, &self.frame, hatch, is_backwards, &mut scratch.curves, out)?;
+        Ok(())
+    }
+
+    /// Crosses that lie further back by `drift` on every line a millimetre across.
+    fn crosses(&self, crossing: &Crossing<'_>, drift: f64) -> Result<Vec<Vec<Batch>>, Exceeded> {
+        let row = |middle: f64| Lattice::cell(self.region.along(), middle, crossing.spacing.to_mm());
+        self.in_bands(crossing.hatch.pitch, self.region.across(), |scratch, band, out| {
+            for &(number, v) in band {
+                let row = row(-v * drift);
+                self.job.budget.work(row.count() * (DOT + BANK) as f64)?;
+                let start = out.lines.len();
+                for (_, u) in row.places() {
+                    self.cross(crossing, self.frame.page(u, v), scratch, out)?;
+                }
+                if number.rem_euclid(2) == 1 {
+                    out.lines[start..].reverse();
+                }
+                if out.lines.len() > self.job.budget.limit() {
+                    return Err(Exceeded::Marks);
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// Draws a cross whose middle lies in the region and on no tile.
+    fn cross(
+        &self,
+        crossing: &Crossing<'_>,
+        middle: Point,
+        scratch: &mut Scratch,
+        out: &mut Batch,
+    ) -> Result<(), Exceeded> {
+        if !self.job.bank.region().contains(middle) {
+            return Ok(());
+        }
+        let half = crossing.size.to_mm() / 2.0;
+        self.job.budget.look(&mut scratch.looks, self.job.nearby.candidates(middle, half) * PROFILE)?;
+        for arm in ARMS {
+            let frame = Frame::new(middle, self.frame.along * arm.x + self.frame.along.turned() * arm.y);
+            scratch.ranges.reset(-half, half);
+            let Scratch { ranges, area, .. } = scratch;
+            self.job.nearby.near(middle, half, |tile| {
+                area.set(self.job.nearby.figure(tile), &frame);
+                area.spans(0.0, |(start, end)| ranges.subtract(start, end));
+            });
+            draw_arm(self.job, crossing, &frame, true, scratch, out);
+        }
+        Ok(())
     }
 
     /// Whether a dot lies in the region and clear of all tiles.

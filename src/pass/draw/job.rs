@@ -12,7 +12,7 @@ use super::edge::{self, Bank};
 use super::nearby::Nearby;
 use super::palette::{Batch, Palette};
 use super::silhouette::Silhouette;
-use super::{dashes, dots, lines, solid};
+use super::{arcs, crosses, curves, dashes, dots, lines, motif, nawaami, scribble, solid, waves};
 
 /// Tiles that one thread draws at a time.
 const CHUNK: usize = 256;
@@ -48,6 +48,7 @@ pub(super) struct Scratch {
     /// Other ranges along it.
     pub(super) others: Vec<(f64, f64)>,
     pub(super) edge: edge::Scratch,
+    pub(super) curves: curves::Scratch,
     /// Looks that the budget does not know of as yet.
     pub(super) looks: u64,
 }
@@ -140,8 +141,7 @@ impl Job<'_> {
         for number in 1..=(layers.full + u8::from(layers.part > 0.0)).min(4) {
             let at = usize::from(number - 1).min(fills.len() - 1);
             let slot = self.palette.slot(at);
-            // Dots of all layers stand on one lattice.
-            let turn = if matches!(fills[at].kind, FillKind::Dots { .. }) { 1 } else { number };
+            let turn = if stands_on_one_lattice(&fills[at].kind) { 1 } else { number };
             let layer = Layer {
                 number,
                 share: if number <= layers.full { 1.0 } else { layers.part },
@@ -162,6 +162,28 @@ impl Job<'_> {
                 FillKind::Dots { hatch, spacing, radius } => {
                     dots::draw(self, &layer, &dots::Dotting::new(hatch, *spacing, *radius), scratch, batch)?;
                 }
+                FillKind::Crosses { hatch, spacing, size } => {
+                    crosses::draw(
+                        self,
+                        &layer,
+                        &crosses::Crossing { hatch, spacing: *spacing, size: *size },
+                        scratch,
+                        batch,
+                    )?;
+                }
+                FillKind::Arcs(hatch) => arcs::draw(self, &layer, hatch, scratch, batch)?,
+                FillKind::Waves { hatch, swing } => {
+                    curves::draw(self, &layer, hatch, &waves::Waves::new(swing), scratch, batch)?;
+                }
+                FillKind::Scribble { hatch, loops, spacing } => {
+                    let key = self.sites.original(piece.tile);
+                    let scribble = scribble::Scribble::new(self.paint, key, number, *loops, *spacing);
+                    curves::draw(self, &layer, hatch, &scribble, scratch, batch)?;
+                }
+                FillKind::Nawaami { hatch, swing } => nawaami::draw(self, &layer, hatch, swing, scratch, batch)?,
+                FillKind::Motif { hatch, spacing, figure } => {
+                    motif::draw(self, &layer, &motif::Motif { hatch, spacing: *spacing, figure }, scratch, batch)?;
+                }
                 FillKind::Solid => {
                     // A second coat of the same ink is not seen.
                     if !solid_slots.contains(&Some(slot)) {
@@ -172,6 +194,20 @@ impl Job<'_> {
             }
         }
         Ok(())
+    }
+}
+
+/// Whether the marks of all layers stand on one lattice, those of one between those of another, and none is turned.
+fn stands_on_one_lattice(kind: &FillKind) -> bool {
+    match kind {
+        FillKind::Dots { .. } | FillKind::Crosses { .. } | FillKind::Motif { .. } => true,
+        FillKind::Lines(_)
+        | FillKind::Dashes { .. }
+        | FillKind::Arcs(_)
+        | FillKind::Waves { .. }
+        | FillKind::Scribble { .. }
+        | FillKind::Nawaami { .. }
+        | FillKind::Solid => false,
     }
 }
 

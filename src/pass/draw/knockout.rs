@@ -3,6 +3,8 @@
 //! Strokes are cut by their centre lines, dots are dropped where they are touched, areas are cut as polygons. Where a
 //! paint ends at its region's outline its tiles remove nothing beyond it.
 
+mod curves;
+
 use rayon::prelude::*;
 
 use crate::drawing::{Dots, Layer, Strokes};
@@ -58,12 +60,15 @@ impl<'a> Stencil<'a> {
                     .flat_map_iter(|polyline| polyline.windows(2))
                     .map(|pair| self.nearby.candidates_along(pair[0], pair[1]))
                     .sum::<u64>()
+                + self.cost_of_curves(&strokes.curves)
         };
         let dots = |dots: &Dots| -> u64 {
             dots.centres.par_iter().map(|&centre| self.nearby.candidates(centre, dots.radius.to_mm())).sum()
         };
         let cost = |layer: &Layer| {
-            layer.strokes.iter().map(lines).sum::<u64>() as f64 + layer.dots.iter().map(dots).sum::<u64>() as f64
+            layer.strokes.iter().map(lines).sum::<u64>() as f64
+                + layer.dots.iter().map(dots).sum::<u64>() as f64
+                + self.cost_of_curves(&layer.tapers.spines) as f64
         };
         layers.iter().map(cost).sum()
     }
@@ -73,7 +78,10 @@ impl<'a> Stencil<'a> {
         for strokes in &mut layer.strokes {
             *strokes = self.cut_strokes(strokes);
         }
-        layer.strokes.retain(|strokes| !(strokes.lines.is_empty() && strokes.polylines.is_empty()));
+        layer
+            .strokes
+            .retain(|strokes| !(strokes.lines.is_empty() && strokes.polylines.is_empty() && strokes.curves.is_empty()));
+        layer.tapers = self.cut_tapers(&layer.tapers);
         for dots in &mut layer.dots {
             *dots = self.cut_dots(dots);
         }
@@ -97,7 +105,7 @@ impl<'a> Stencil<'a> {
                 (lines, ends)
             })
             .collect();
-        let mut cut = Strokes::new(strokes.pen, strokes.cap);
+        let mut cut = Strokes { curves: self.cut_curves(strokes), ..Strokes::new(strokes.pen, strokes.cap) };
         for (lines, ends) in chunks {
             cut.bundle_ends.extend(ends.iter().map(|end| cut.lines.len() + end));
             cut.lines.extend(lines);

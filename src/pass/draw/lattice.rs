@@ -59,6 +59,12 @@ impl Lattice {
         (self.range.1 - self.range.0 + 1.0).max(0.0)
     }
 
+    /// A place by how many lie before it.
+    pub(super) fn place(&self, i: u64) -> Option<f64> {
+        let number = self.range.0 + i as f64;
+        (number <= self.range.1).then(|| self.origin + number * self.step)
+    }
+
     /// The places with their numbers, in order.
     pub(super) fn places(self) -> impl DoubleEndedIterator<Item = (i64, f64)> {
         let range =

@@ -76,6 +76,34 @@ pub(super) fn spread(job: &Job<'_>, layer: &Layer<'_>, hatch: &Hatch, scratch: &
     if layer.is_continued { lattice.over(scratch.area.across()) } else { lattice }
 }
 
+/// Where lines lie, and marks along them, so that no mark falls on one of an earlier layer.
+///
+/// All layers stand on one lattice of half the pitch and half the spacing, turned with the tile, of which each takes a
+/// quarter: the second the middles of the first one's fields, the third and fourth the middles of their sides. The second
+/// layer makes the marks of the first denser by the square root of two and turns their lattice by 45 degrees, where pitch
+/// and spacing are equal; with the fourth it is square again, at half the distance. Tone grows evenly with every layer.
+pub(super) fn interleaved(
+    job: &Job<'_>,
+    layer: &Layer<'_>,
+    hatch: &Hatch,
+    spacing: Length,
+    scratch: &mut Scratch,
+) -> (Lattice, Lattice) {
+    let lines = spread(job, layer, hatch, scratch);
+    let along = scratch.whole.along();
+    let row = if job.paint.tone.shape.is_cell() {
+        Lattice::cell(along, 0.0, spacing.to_mm())
+    } else {
+        Lattice::stamp(along, spacing.to_mm(), 0.5, 1)
+    };
+    match layer.number {
+        0 | 1 => (lines, row),
+        2 => (lines.moved(0.5), row.moved(0.5)),
+        3 => (lines, row.moved(0.5)),
+        _ => (lines.moved(0.5), row),
+    }
+}
+
 /// Takes the silhouettes of the tiles that hide parts of this one.
 fn set_shadows(job: &Job<'_>, layer: &Layer<'_>, scratch: &mut Scratch) {
     let count = scratch.covers.len();
@@ -137,7 +165,7 @@ fn cross(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
 }
 
 /// Pieces of no more than this many millimetres are rounding, however short strokes may be.
-const CRUMB: f64 = 1e-6;
+pub(super) const CRUMB: f64 = 1e-6;
 
 /// A line of which some ranges are to be drawn.
 pub(super) struct Line<'a> {

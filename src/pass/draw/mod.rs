@@ -5,8 +5,12 @@
 //! order of their sites, so that the drawing does not depend on threads. [`Assembly`] lays paints and outlines over each
 //! other.
 
+mod arcs;
 mod assemble;
 mod budget;
+mod crosses;
+mod curves;
+mod cutout;
 mod dashes;
 mod dots;
 mod edge;
@@ -16,17 +20,22 @@ mod job;
 mod knockout;
 mod lattice;
 mod lines;
+mod motif;
+mod nawaami;
 mod nearby;
 mod palette;
+mod scribble;
 mod silhouette;
 mod solid;
 mod torus;
+mod waves;
 mod weave;
 
 #[cfg(test)]
 mod tests;
 
 pub use assemble::{Assembly, Item, Setting, items};
+pub use nawaami::tangents;
 
 use crate::diag::Diagnostic;
 use crate::drawing::Layer;

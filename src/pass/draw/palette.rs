@@ -20,7 +20,14 @@ enum Kind {
 impl Kind {
     fn of(fill: &Fill) -> Self {
         match &fill.kind {
-            FillKind::Lines(hatch) | FillKind::Dashes { hatch, .. } => Self::Strokes(hatch.pen, hatch.cap),
+            FillKind::Lines(hatch)
+            | FillKind::Dashes { hatch, .. }
+            | FillKind::Crosses { hatch, .. }
+            | FillKind::Arcs(hatch)
+            | FillKind::Waves { hatch, .. }
+            | FillKind::Scribble { hatch, .. }
+            | FillKind::Nawaami { hatch, .. }
+            | FillKind::Motif { hatch, .. } => Self::Strokes(hatch.pen, hatch.cap),
             FillKind::Dots { radius, .. } => Self::Dots(*radius),
             FillKind::Solid => Self::Areas,
         }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod curves;
 mod laws;
 
 use super::*;
@@ -383,6 +384,7 @@ fn groups_and_inks_are_inherited() {
                 assembly.paint(paint, &setting, &Run::new(paint, &canvas).stages()).unwrap();
             }
             Item::Outline(outline) => assembly.outline(outline, &setting).unwrap(),
+            Item::Ink(ink) => assembly.ink(ink, &setting).unwrap(),
         }
     }
     let drawing = assembly.finish();

@@ -2,11 +2,11 @@
 //!
 //! What draws the file knows ids only, so elements that can be selected otherwise but have none are given one.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use usvg::roxmltree::{Document, Error, Node, ParsingOptions};
 
-use super::SvgError;
+use super::{Lack, SvgError};
 
 /// How deep elements may be nested.
 const DEEPEST: usize = 256;
@@ -27,6 +27,8 @@ pub(super) struct Elements {
     pub(super) root: Option<String>,
     pub(super) layers: Names,
     pub(super) classes: Names,
+    /// The kinds of element that are not drawn, as far as the file has any.
+    pub(super) unread: BTreeSet<Lack>,
     /// Places in the text and the ids to be put there, in order.
     missing: Vec<(usize, String)>,
 }
@@ -84,6 +86,11 @@ pub(super) fn elements(document: &Document<'_>, text: &str) -> Result<Elements, 
 
 impl Elements {
     fn note(&mut self, node: Node<'_, '_>, text: &str, prefix: &str) {
+        match node.tag_name().name() {
+            "image" => drop(self.unread.insert(Lack::Picture)),
+            "text" => drop(self.unread.insert(Lack::Text)),
+            _ => {}
+        }
         let is_layer = node.attribute((INKSCAPE, "groupmode")) == Some("layer");
         let layer = node.attribute((INKSCAPE, "label")).filter(|_| is_layer);
         let classes = node.attribute("class").unwrap_or_default();

@@ -77,7 +77,11 @@ fn put_statement(out: &mut String, statement: &Statement) {
             put_optional(out, "as", name.as_ref());
             put_optional(out, "seed", seed.as_ref());
         }
-        StatementKind::Outline { region, pen } => put_node(out, "outline", &[region, pen]),
+        StatementKind::Outline { region, pen } => {
+            put_node(out, "outline", &[region]);
+            put_optional(out, "pen", pen.as_ref());
+        }
+        StatementKind::Ink { drawing } => put_node(out, "ink", &[drawing]),
         StatementKind::Layer { name, ink, body } => {
             put_node(out, "layer", &[name]);
             put_optional(out, "ink", ink.as_ref());

@@ -68,7 +68,8 @@ impl Formatter<'_> {
                 let clauses = [("with ", Some(tone)), ("as ", name.as_ref()), ("seed ", seed.as_ref())];
                 self.clauses("paint ", region, &clauses)
             }
-            StatementKind::Outline { region, pen } => self.clauses("outline ", region, &[("pen ", Some(pen))]),
+            StatementKind::Outline { region, pen } => self.clauses("outline ", region, &[("pen ", pen.as_ref())]),
+            StatementKind::Ink { drawing } => Layout::Concat(vec![Layout::text("ink "), self.expr(drawing)]),
             StatementKind::Layer { name, ink, body } => {
                 let mut parts = vec![Layout::text("layer "), self.expr(name)];
                 if let Some(ink) = ink {
@@ -245,6 +246,7 @@ fn stand_apart(above: &Statement, below: &Statement) -> bool {
         StatementKind::Tone { .. } => 6,
         StatementKind::Paint { .. }
         | StatementKind::Outline { .. }
+        | StatementKind::Ink { .. }
         | StatementKind::Layer { .. }
         | StatementKind::For { .. }
         | StatementKind::If { .. } => 7,

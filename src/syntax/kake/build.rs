@@ -93,8 +93,9 @@ impl Reader<'_> {
             }
             Rule::outline => {
                 let region = self.expression(first);
-                StatementKind::Outline { region, pen: self.expression(parts.next()?) }
+                StatementKind::Outline { region, pen: parts.next().map(|pen| self.expression(pen)) }
             }
+            Rule::ink => StatementKind::Ink { drawing: self.expression(first) },
             Rule::paint => {
                 let region = self.expression(first);
                 let tone = self.expression(parts.next()?);

@@ -279,9 +279,11 @@ impl<'a> Builder<'a> {
         } else if !frame.wants_value {
             if word == "seed" && frame.keyword == "paint" && !frame.has_seed {
                 (frame.has_seed, frame.wants_value) = (true, true);
+            } else if word == "ink" && frame.keyword == "layer" {
+                frame.wants_value = true;
             } else if is_keyword(word) {
                 self.begin(index);
-            } else if matches!(word, "with" | "as" | "in" | "pen" | "ink") {
+            } else if matches!(word, "with" | "as" | "in" | "pen") {
                 frame.wants_value = true;
             } else if RESERVED.contains(&word) {
                 self.word_of_value(index, word);

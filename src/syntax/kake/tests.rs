@@ -61,6 +61,8 @@ if mode == "grid" {
   paint body with hand.sketchy
 } else {
   outline body pen pen
+  outline canvas
+  ink svg("figure.svg", layer: "hair")
 }
 
 experiment factorial {

@@ -7,7 +7,7 @@ use crate::span::Span;
 use crate::syntax::ast::{Doc, Expr, Ident, Statement, StatementKind};
 
 /// The keys that say which statement an entry is.
-const STATEMENTS: [&str; 5] = ["paint", "outline", "layer", "for", "if"];
+const STATEMENTS: [&str; 6] = ["paint", "outline", "layer", "ink", "for", "if"];
 
 /// What a drawing statement may have, whichever it is.
 #[derive(Default)]
@@ -34,7 +34,8 @@ impl Reader<'_> {
         };
         let (known, required): (&[&str], &[&str]) = match kind {
             "paint" => (&["paint", "with", "as", "seed", "doc"], &["with"]),
-            "outline" => (&["outline", "pen", "doc"], &["pen"]),
+            "outline" => (&["outline", "pen", "doc"], &[]),
+            "ink" => (&["ink", "doc"], &[]),
             "layer" => (&["layer", "ink", "draw", "doc"], &["draw"]),
             "for" => (&["for", "in", "draw", "doc"], &["in", "draw"]),
             _ => (&["if", "draw", "else-if", "else", "doc"], &["draw"]),
@@ -70,7 +71,7 @@ impl Reader<'_> {
             "as" => parts.name = self.paint_name(key, value),
             "seed" => parts.seed = Some(self.value(value)),
             "pen" => parts.pen = Some(self.value(value)),
-            "ink" => parts.ink = Some(self.value(value)),
+            "ink" if kind == "layer" => parts.ink = Some(self.value(value)),
             "in" => parts.iterable = Some(self.value(value)),
             "draw" => parts.body = self.body(key, value),
             "else" => parts.otherwise = Some(self.body(key, value)),
@@ -125,7 +126,7 @@ impl Reader<'_> {
             }
         }
         if table.is_empty() {
-            self.missing(span, "an entry of `draw` needs `paint`, `outline`, `layer`, `for` or `if`".into());
+            self.missing(span, "an entry of `draw` needs `paint`, `outline`, `ink`, `layer`, `for` or `if`".into());
         }
     }
 }
@@ -136,7 +137,8 @@ fn finish(kind: &str, parts: Parts, span: Span) -> Option<Statement> {
     let head = or_lost(parts.head);
     let kind = match kind {
         "paint" => StatementKind::Paint { region: head, tone: or_lost(parts.with), name: parts.name, seed: parts.seed },
-        "outline" => StatementKind::Outline { region: head, pen: or_lost(parts.pen) },
+        "outline" => StatementKind::Outline { region: head, pen: parts.pen },
+        "ink" => StatementKind::Ink { drawing: head },
         "layer" => StatementKind::Layer { name: head, ink: parts.ink, body: parts.body },
         "for" => StatementKind::For { variable: parts.variable?, iterable: or_lost(parts.iterable), body: parts.body },
         _ => {

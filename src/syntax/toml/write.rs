@@ -144,6 +144,7 @@ impl Writer {
             }
             StatementKind::Paint { .. }
             | StatementKind::Outline { .. }
+            | StatementKind::Ink { .. }
             | StatementKind::Layer { .. }
             | StatementKind::For { .. }
             | StatementKind::If { .. } => {}
@@ -187,7 +188,13 @@ impl Writer {
             }
             StatementKind::Outline { region, pen } => {
                 self.expr("outline", region);
-                self.expr("pen", pen);
+                if let Some(pen) = pen {
+                    self.expr("pen", pen);
+                }
+                self.doc(statement.doc.as_ref());
+            }
+            StatementKind::Ink { drawing } => {
+                self.expr("ink", drawing);
                 self.doc(statement.doc.as_ref());
             }
             StatementKind::Layer { name, ink, body } => {
@@ -269,6 +276,7 @@ pub(super) fn section(kind: &StatementKind) -> &'static str {
         StatementKind::Fn { .. } => "fn",
         StatementKind::Paint { .. }
         | StatementKind::Outline { .. }
+        | StatementKind::Ink { .. }
         | StatementKind::Layer { .. }
         | StatementKind::For { .. }
         | StatementKind::If { .. } => "draw",

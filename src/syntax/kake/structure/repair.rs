@@ -43,7 +43,7 @@ impl Builder<'_> {
             "tone" | "fn" => is_name && matches!(after, "(" | "{" | "="),
             "experiment" => is_name && after == "{",
             "for" => is_name && after == "in",
-            "paint" | "outline" => {
+            "paint" | "outline" | "ink" => {
                 is_name && after != ":" && !(is_keyword(next) && self.is_followed_plainly(index + 1, next))
             }
             "layer" | "import" => matches!(kind, Some(Kind::Text | Kind::TextOpen | Kind::BadText)),
@@ -57,7 +57,7 @@ impl Builder<'_> {
         match keyword {
             "edition" | "seed" => self.kind_of(index + 1) == Some(Kind::Number),
             "canvas" => self.text_of(index + 1) == "{",
-            "paint" | "outline" => false,
+            "paint" | "outline" | "ink" => false,
             _ => self.is_followed_as_statement(index, keyword),
         }
     }

@@ -155,6 +155,7 @@ fn keywords_are_words_elsewhere() {
     for text in [
         "let seed = 3\nlet a = seed\nlet b =\n  region\n  + canvas\n",
         "paint region with field as tone seed seed\noutline paint pen pen\nlayer layer ink ink { }",
+        "ink ink\nlet ink = ink\noutline ink\nink f(ink: ink)\nlayer \"a\" ink ink { ink ink }",
         "for for in in { }\nlet if_ = if seed == let then param else import",
         "paint seed with with seed seed seed 4",
         "param a = in in in",
