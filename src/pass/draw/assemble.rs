@@ -133,20 +133,30 @@ impl<'a> Assembly<'a> {
     }
 
     /// Draws the strokes and fills of a file on top of what is there, as far as they lie on the canvas. A run of marks of
-    /// one colour is one layer; what is not opaque is one by itself, so that it shows what lies under it.
+    /// one colour is one layer; what is not opaque is one by itself, so that it shows what lies under it. On a canvas that
+    /// repeats what lies beyond its borders comes in at the opposite ones.
     ///
     /// # Errors
     /// If the drawing comes to have more marks than the limit allows.
     pub fn ink(&mut self, ink: &Ink, setting: &Setting) -> Result<(), Diagnostic> {
         let mut layers: Vec<Layer> = Vec::new();
+        let period = self.canvas.period();
+        let sheet = if period.is_some() { torus::EVERYWHERE } else { self.canvas.bounds() };
         for mark in &ink.marks {
             let mut layer = Layer::new(setting.groups.clone(), "ink".to_owned(), mark.colour);
-            put(mark, self.canvas.bounds(), &mut layer);
+            put(mark, sheet, &mut layer);
             match layers.last_mut() {
                 Some(last) if mark.colour.a == 255 && last.ink == mark.colour => join(last, layer),
                 _ if layer.marks() > 0 => layers.push(layer),
                 _ => {}
             }
+        }
+        if let Some(period) = period {
+            let wrapped = layers.into_iter().map(|layer| torus::wrap(layer, period, self.limits.strokes));
+            layers = wrapped
+                .collect::<Result<_, _>>()
+                .map_err(|exceeded: Exceeded| exceeded.diagnostic(self.limits, ink.span))?;
+            layers.retain(|layer| layer.marks() > 0);
         }
         self.add(layers, ink.span)
     }

@@ -18,6 +18,9 @@ use super::{Stages, ground, solid};
 /// taken for a crumb when a later paint cuts it.
 const OVERHANG: f64 = 3.0;
 
+/// An area that holds all that can be drawn: a kilometre each way, in millimetres.
+pub(super) const EVERYWHERE: Rect = Rect::new(Point::new(-1e6, -1e6), Point::new(1e6, 1e6));
+
 /// How far beyond the page a stroke of this width is drawn, in millimetres.
 pub(super) fn overhang(pen: Length) -> f64 {
     pen.to_mm() * OVERHANG
@@ -111,8 +114,11 @@ pub(super) fn protrusion(layers: &[Layer], period: Period) -> f64 {
 /// If marks go round so often that there would be more than `most`.
 pub(super) fn wrap(layer: Layer, period: Period, most: u64) -> Result<Layer, Exceeded> {
     let mut wrapper = Wrapper { period, page: period.area(), left: most };
-    let strokes = layer.strokes.iter().map(|strokes| wrapper.strokes(strokes)).collect::<Result<_, _>>()?;
-    let dots = layer.dots.iter().map(|dots| wrapper.dots(dots)).collect::<Result<_, _>>()?;
+    let mut strokes: Vec<Strokes> =
+        layer.strokes.iter().map(|strokes| wrapper.strokes(strokes)).collect::<Result<_, _>>()?;
+    strokes.retain(|strokes| !(strokes.lines.is_empty() && strokes.polylines.is_empty() && strokes.curves.is_empty()));
+    let mut dots: Vec<Dots> = layer.dots.iter().map(|dots| wrapper.dots(dots)).collect::<Result<_, _>>()?;
+    dots.retain(|dots| !dots.centres.is_empty());
     let tapers = wrapper.tapers(&layer.tapers)?;
     let areas = wrapper.areas(layer.areas)?;
     Ok(Layer { strokes, dots, tapers, areas, ..Layer::new(layer.groups, layer.name, layer.ink) })

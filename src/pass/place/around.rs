@@ -92,7 +92,8 @@ impl Round {
                 continue;
             }
             own.insert(place(p), number);
-            sites.points.push(stretched(p));
+            // What rounding left before the border is on it, as its cell is.
+            sites.points.push(stretched(Point::new(p.x.max(0.0), p.y.max(0.0))));
             cells.extend(found.cells.as_ref().map(|cells| cells[i]));
             if let Some(found) = &found.tiling {
                 let ring: Vec<Point> = found.cell(i).iter().map(|&corner| stretched(corner)).collect();
