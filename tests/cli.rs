@@ -301,9 +301,9 @@ fn a_picture_is_built_again_from_itself() {
 fn a_picture_with_all_its_files_is_built_anywhere() {
     let desk = Desk::new();
     with_files(&desk);
-    desk.quietly(&["build", "art/scene.kake", "--embed", "all", "-o", "one.svg", "-o", "one.png"]);
+    desk.quietly(&["build", "art/scene.kake", "--embed", "all", "-o", "one.svg", "-o", "one.png", "-o", "one.pdf"]);
     fs::remove_dir_all(desk.path("art")).expect("it is there");
-    for picture in ["one.svg", "one.png"] {
+    for picture in ["one.svg", "one.png", "one.pdf"] {
         desk.quietly(&["build", picture, "--embed", "all", "-o", "again.svg", "-o", "again.png"]);
         assert!(desk.get("again.svg") == desk.get("one.svg"), "{picture}");
         assert!(desk.get("again.png") == desk.get("one.png"), "{picture}");
@@ -335,12 +335,27 @@ fn a_picture_keeps_its_standard_library() {
 }
 
 #[test]
+fn a_plot_says_what_the_pen_does() {
+    let desk = Desk::new();
+    let ran = desk.kake(&["build", "scene.kake", "--plot", "-o", "plot.svg"]);
+    assert_eq!((ran.status(), ran.out().as_str()), (0, ""));
+    let said = ran.err();
+    assert!(said.contains("1 black 0.2mm") && said.contains("2 black") && said.contains("all "), "{said}");
+    assert!(said.contains("lifts") && said.contains("down") && said.contains("up"), "{said}");
+    let plot = String::from_utf8(desk.get("plot.svg")).expect("it is text");
+    assert!(plot.contains("inkscape:label=\"1 black 0.2mm\"") && !plot.contains("<rect"));
+    // What is built from a plot is one.
+    assert_eq!(desk.kake(&["build", "plot.svg", "-o", "again.svg"]).status(), 0);
+    assert!(desk.get("again.svg") == desk.get("plot.svg"));
+}
+
+#[test]
 fn a_picture_without_a_scene_says_so() {
     let desk = Desk::new();
-    desk.quietly(&["build", "scene.kake", "--embed", "none", "-o", "bare.svg", "-o", "bare.png"]);
+    desk.quietly(&["build", "scene.kake", "--embed", "none", "-o", "bare.svg", "-o", "bare.png", "-o", "bare.pdf"]);
     desk.put("other.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\"/>");
     desk.put("broken.png", "no picture at all");
-    for picture in ["bare.svg", "bare.png", "other.svg", "broken.png"] {
+    for picture in ["bare.svg", "bare.png", "bare.pdf", "other.svg", "broken.png"] {
         desk.kake(&["build", picture, "-o", "x.svg"]).refused(1, "kake::metadata");
         desk.kake(&["check", picture]).refused(1, "kake::metadata");
     }
@@ -367,7 +382,8 @@ fn faults_of_the_command_line() {
         (&["build"][..], "SCENE"),
         (&["biuld", "scene.kake"], "biuld"),
         (&["build", "scene.kake", "--sede", "3"], "--sede"),
-        (&["build", "scene.kake", "-o", "x.bmp"], ".svg, .png or .json"),
+        (&["build", "scene.kake", "-o", "x.bmp"], ".svg, .png, .pdf or .json"),
+        (&["build", "scene.kake", "--plot", "-o", "x.svg", "-o", "x.png"], "x.png: what is plotted is written as .svg"),
         (&["build", "scene.kake", "-o", "x.svg", "-o", "x.svg"], "given twice"),
         (&["build", "scene.kake", "-o", "scene.kake"], "the scene itself"),
         (&["build", "scene.kake", "--seed", "-1"], "-1"),

@@ -53,6 +53,22 @@ fn alike(first: &str, second: &str, names: &[&str]) {
     }
 }
 
+#[test]
+fn a_hand_that_strays_by_nothing_is_none() {
+    let tone = |hand: &str| {
+        let text = format!(
+            "{HEAD}tone t {{ place: poisson(radius: 3mm) fill: [lines(pitch: 0.7mm), dashes(pitch: 1mm, dash: 1mm),
+             dots(pitch: 1mm)] k: 3 ground: nearest {hand} }}\n{DISC}paint disc with t"
+        );
+        svg(&drawing(&text))
+    };
+    let plain = tone("");
+    assert_eq!(plain, tone("hand: hand(angle: 0deg)"));
+    let zeros = "hand: hand(angle: 0deg, spacing: 0%, pen: 0%, taper: 0%, overshoot: 0mm, wobble: 0mm)";
+    assert_eq!(plain, tone(zeros));
+    assert_ne!(plain, tone("hand: hand()"));
+}
+
 fn base() -> String {
     format!("{HEAD}{TONES}{DISC}paint canvas with a as \"sky\"\npaint disc with b as \"moon\"\n")
 }

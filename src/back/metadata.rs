@@ -43,7 +43,7 @@ pub struct Metadata {
     /// What `--set` gave, as text.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub params: BTreeMap<String, String>,
-    /// Other options of the command line that change the picture, as text: `dpi`, `only`.
+    /// Other options of the command line that change the picture, as text: `dpi`, `only`, `plot`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub options: BTreeMap<String, String>,
     /// The paths and texts of the scene and what it imports, in the order they were read.

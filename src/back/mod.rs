@@ -11,6 +11,7 @@ mod outline;
 mod path;
 pub mod pdf;
 mod pieces;
+pub mod plot;
 pub mod png;
 pub mod raster;
 pub mod svg;

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::back::metadata::Metadata;
+use crate::back::plot::plot;
 use crate::back::{json, pdf, png, svg};
 use crate::diag::{Code, Diagnostic};
 use crate::drawing::Drawing;
@@ -13,7 +14,7 @@ use crate::scene::Limits;
 use crate::{Compiled, Config, compile};
 
 use super::files::{Opened, Pending, open, plain, print, write_beside};
-use super::picture::{Embed, Form, metadata, take_over};
+use super::picture::{Embed, Form, is_plot, metadata, set_plot, take_over};
 use super::progress::Progress;
 use super::{Ended, SceneArgs, report};
 
@@ -40,6 +41,10 @@ pub(super) struct BuildArgs {
     /// What an SVG is: a page, or a swatch with the page as a pattern, for a canvas that repeats
     #[arg(long = "as", value_enum, value_name = "FORM")]
     form: Option<Form>,
+    /// For pen plotters: one layer for each ink and pen width, strokes only, joined and put in an order with short ways
+    /// between them; says how far the pen goes. Outputs are .svg
+    #[arg(long)]
+    plot: bool,
     /// What the pictures carry so that they can be built again
     #[arg(long, value_enum, default_value_t = Embed::Text)]
     embed: Embed,
@@ -143,6 +148,9 @@ fn outputs(arguments: &BuildArgs) -> Result<Vec<(PathBuf, Kind)>, String> {
         if several && !output.to_string_lossy().contains("{seed}") {
             return Err(format!("{}: with several seeds an output needs {{seed}} in its name", output.display()));
         }
+        if arguments.plot && kind_of(output) != Ok(Kind::Svg) {
+            return Err(format!("{}: what is plotted is written as .svg", output.display()));
+        }
         if outputs[..i].contains(output) {
             return Err(format!("{} is given twice", output.display()));
         }
@@ -187,12 +195,26 @@ fn build(arguments: &BuildArgs, opened: &Opened, outputs: &[(PathBuf, Kind)], se
         eprintln!("kake: a pattern needs a canvas that repeats: `canvas {{ … repeat: true }}`");
         return Ended::Fault;
     }
-    let metadata = metadata(arguments.embed, &config, (opened, form), &compiled);
+    let is_plotted = arguments.plot || opened.picture.as_ref().is_some_and(is_plot);
+    let mut metadata = metadata(arguments.embed, &config, (opened, form), &compiled);
+    let plot = (is_plotted && outputs.iter().any(|(_, kind)| *kind == Kind::Svg)).then(|| {
+        progress.step("plot", "");
+        plot(drawing)
+    });
+    if plot.is_some()
+        && let Some(metadata) = &mut metadata
+    {
+        set_plot(metadata);
+    }
     // All are written beside their places first, so that a full disk leaves every old file as it was.
     let mut pending = Vec::new();
     for (output, kind) in outputs {
         progress.step(kind.name(), "");
         let target = target(output, seed);
+        let drawing = match (&plot, kind) {
+            (Some(plot), Kind::Svg) => &plot.drawing,
+            (_, Kind::Svg | Kind::Png | Kind::Pdf | Kind::Json) => drawing,
+        };
         match write(drawing, metadata.as_ref(), (*kind, form), &target) {
             Ok(file) => pending.extend(file.map(|file| (target, file))),
             Err(error) => return cannot_write(&target, &error),
@@ -204,6 +226,9 @@ fn build(arguments: &BuildArgs, opened: &Opened, outputs: &[(PathBuf, Kind)], se
         }
     }
     let spent = progress.finish();
+    if let Some(plot) = &plot {
+        report::plot(plot);
+    }
     if arguments.timings {
         for (name, spent) in spent {
             eprintln!("{name:>8} {:>10.1} ms", spent.as_secs_f64() * 1000.0);

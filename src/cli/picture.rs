@@ -62,6 +62,19 @@ pub(super) fn take_over(config: &mut Config, opened: &Opened) {
     config.only = config.only.take().or_else(|| picture.options.get("only").cloned());
 }
 
+/// The option that says that a picture is a plot.
+const PLOT: &str = "plot";
+
+/// Whether a picture was made for a plotter; what is built from it is too.
+pub(super) fn is_plot(picture: &Metadata) -> bool {
+    picture.options.contains_key(PLOT)
+}
+
+/// Says that a picture was made for a plotter.
+pub(super) fn set_plot(picture: &mut Metadata) {
+    picture.options.insert(PLOT.to_owned(), String::new());
+}
+
 /// How a picture was made, for the picture itself.
 pub(super) fn metadata(
     embed: Embed,

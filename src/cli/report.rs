@@ -1,8 +1,10 @@
-//! Diagnostics on standard error.
+//! Diagnostics, and what a plot costs, on standard error.
 
 use std::io::{self, IsTerminal};
 
+use crate::back::plot::{Plot, Travel};
 use crate::diag::{Code, Diagnostic, RenderConfig, render};
+use crate::geom::Length;
 use crate::span::Sources;
 
 use super::Ended;
@@ -35,4 +37,34 @@ pub(super) fn cannot_open(error: OpenError) -> Ended {
             diagnostics(&[diagnostic], &Sources::new())
         }
     }
+}
+
+/// Says how far a pen goes in each layer of a plot and in all of them, and what is not drawn as it looks.
+pub(super) fn plot(plot: &Plot) {
+    for warning in &plot.warnings {
+        eprintln!("kake: {warning}");
+    }
+    let all = plot.layers.iter().fold((Travel::default(), Travel::default()), |(before, after), layer| {
+        (before.and(layer.before), after.and(layer.after))
+    });
+    let layers = plot.layers.iter().map(|layer| (layer.name.as_str(), layer.before, layer.after));
+    let sum = (plot.layers.len() != 1).then_some(("all", all.0, all.1));
+    let rows: Vec<_> = layers.chain(sum).collect();
+    let width = rows.iter().map(|(name, ..)| name.chars().count()).max().unwrap_or(0);
+    for (name, before, after) in rows {
+        eprintln!(
+            "{name:width$}  {:>8} lifts  {:>9} down  {:>9} up   (as drawn: {} lifts, {} up)",
+            after.lifts,
+            metres(after.down),
+            metres(after.up),
+            before.lifts,
+            metres(before.up)
+        );
+    }
+}
+
+/// A length that may be long.
+fn metres(length: Length) -> String {
+    let mm = length.to_mm();
+    if mm < 1000.0 { format!("{mm:.1} mm") } else { format!("{:.2} m", mm / 1000.0) }
 }

@@ -86,7 +86,7 @@ codes! {
         "Lengths take `mm cm in pt px`, angles `deg rad turn`, shares `%`. A unit touches its number."
     UnknownType "unknown-type" "A type is not known"
         "Types are `number length angle percentage colour string point box list range record bool` and the scene's own \
-         `region field placement shape angles fill tone`."
+         `region field placement shape angles fill hand tone`."
     NotYet "not-yet" "A name of the language that this version cannot build"
         "The name belongs to the language, and scenes that use it can be formatted and converted, but this version of \
          the program does not draw it. A later one will."
@@ -165,6 +165,9 @@ codes! {
     Seam "seam" "A field does not repeat"
         "On a canvas that repeats a field should have the same values at opposite borders, as noise has, or tone jumps where \
          copies meet. Strokes continue all the same."
+    Hand "hand" "A hand strays too far"
+        "Strokes that wander by more than half of the pitch run into each other, and strokes that overshoot by more than the \
+         distance of tiles cross their neighbours. The picture is drawn as the scene says."
     Tiling "tiling" "Cells need a placement that is a tiling"
         "`cell(...)` draws the cells of a tiling and `link: edges` joins those that share an edge. `grid`, `hex`, \
          `triangles`, `penrose` and `pinwheel` are tilings. Sites of other placements get cells with `voronoi(...)`."

@@ -15,7 +15,7 @@ const DEPTH: u32 = 24;
 const ROUNDS: u32 = 60;
 
 /// How near a zero is found, in a curve's parameter.
-const ZERO: f64 = 1e-13;
+const ZERO: f64 = 1e-12;
 
 /// A convex polygon in a frame's coordinates.
 #[derive(Debug, Clone, Default)]
@@ -115,7 +115,13 @@ impl Hull {
             return;
         }
         let first = number as f64;
+        let mut add = |from: f64, to: f64| match out.last_mut() {
+            Some(last) if last.1 == first + from => last.1 = first + to,
+            _ => out.push((first + from, first + to)),
+        };
         self.zeros.clear();
+        let mut crossed = 0;
+        let mut starts_in = true;
         for plane in &self.planes {
             let beyond = cubic.0.map(|p| plane.beyond(p));
             if beyond.iter().all(|&b| b <= TOLERANCE) {
@@ -124,12 +130,16 @@ impl Hull {
             if beyond.iter().all(|&b| b > TOLERANCE) {
                 return;
             }
+            crossed += 1;
+            starts_in = beyond[0] <= TOLERANCE;
             zeros(beyond, &mut self.zeros);
         }
-        let mut add = |from: f64, to: f64| match out.last_mut() {
-            Some(last) if last.1 == first + from => last.1 = first + to,
-            _ => out.push((first + from, first + to)),
-        };
+        match (crossed, self.zeros.as_slice()) {
+            (0, _) => return add(0.0, 1.0),
+            // Across one side and once, as curves mostly do.
+            (1, &[zero]) => return if starts_in { add(0.0, zero) } else { add(zero, 1.0) },
+            _ => {}
+        }
         let is_in = |t: f64| {
             let p = cubic.at(t);
             self.planes.iter().all(|plane| plane.beyond(p) <= TOLERANCE)
@@ -187,27 +197,19 @@ fn halves(c: &[f64; 4]) -> [[f64; 4]; 2] {
 
 /// The one zero of a Bézier of numbers whose coefficients change sign once: Newton's steps, and halvings where they leave
 /// the range.
-fn zero(c: &[f64; 4]) -> f64 {
-    let value = |t: f64| {
-        let s = 1.0 - t;
-        s * s * (s * c[0] + 3.0 * t * c[1]) + t * t * (3.0 * s * c[2] + t * c[3])
-    };
-    let slope = |t: f64| {
-        let s = 1.0 - t;
-        3.0 * (s * s * (c[1] - c[0]) + 2.0 * s * t * (c[2] - c[1]) + t * t * (c[3] - c[2]))
-    };
-    let starts_below = c[0] < 0.0;
+fn zero(&[a, b, c, d]: &[f64; 4]) -> f64 {
+    // In powers of the parameter.
+    let (linear, square, cube) = (3.0 * (b - a), 3.0 * ((c - b) - (b - a)), (d - a) - 3.0 * (c - b));
     let (mut low, mut high) = (0.0, 1.0);
-    let mut t = (c[0] / (c[0] - c[3])).clamp(0.0, 1.0);
+    let mut t = (a / (a - d)).clamp(0.0, 1.0);
     for _ in 0..ROUNDS {
-        let v = value(t);
-        if (v < 0.0) == starts_below {
+        let value = a + t * (linear + t * (square + t * cube));
+        if (value < 0.0) == (a < 0.0) {
             low = t;
         } else {
             high = t;
         }
-        let step = v / slope(t);
-        let newton = t - step;
+        let newton = t - value / (linear + t * (2.0 * square + t * 3.0 * cube));
         let next = if newton > low && newton < high { newton } else { (low + high) / 2.0 };
         if (next - t).abs() <= ZERO {
             return next;

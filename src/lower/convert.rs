@@ -153,6 +153,7 @@ fn constant(value: f64, unit: FieldUnit) -> Value {
 fn hint(value: &Value, kind: Kind, slot: Slot) -> Option<String> {
     Some(match (value, kind) {
         (Value::Number(n), Kind::Angle) => format!("angles need a unit: `{n}deg`"),
+        (Value::Length(_), Kind::Percentage) => "a share is written in per cent: `30%`".to_owned(),
         (Value::Percent(_), Kind::Length) => "lengths need a unit or a canvas unit: `6mm`".to_owned(),
         (Value::String(text), Kind::Length | Kind::Number | Kind::Angle | Kind::Colour) => {
             format!("write it without the quotes: `{}`", text.value)

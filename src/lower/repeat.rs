@@ -4,7 +4,9 @@ use crate::diag::{Code, Diagnostic, grouped};
 use crate::field::Field;
 use crate::geom::{Angle, Length, Period, Point, Rect, ring_bounds, whole_steps};
 use crate::region::{FillRule, Operation, Region};
-use crate::scene::{Amount, AngleRule, FillKind, GridSize, Ground, Placement, Shape, Tone};
+use crate::scene::{
+    Amount, AngleRule, FillKind, GridSize, Ground, IRREGULAR_OVERLAP, POINTED_OVERLAP, Placement, Shape, Tone,
+};
 use crate::span::Span;
 
 use super::cx::Cx;
@@ -169,20 +171,22 @@ fn spacing(place: &Placement) -> Option<Length> {
 
 /// The longer side of a stamp, where it is known before sites are placed. Cells never meet their own copies.
 fn tile_size(tone: &Tone, spacing: Option<Length>) -> Option<Length> {
-    let sized = |sizes: [Option<Length>; 2], overlap: Option<f64>| {
+    let sized = |sizes: [Option<Length>; 2], overlap: Option<f64>, irregular: f64| {
         let given = sizes.into_iter().flatten().reduce(Length::max);
-        let scale = overlap.unwrap_or(if given.is_some() { 1.0 } else { tone.place.default_overlap() });
+        let is_plain = given.is_some() || tone.place.is_lattice();
+        let scale = overlap.unwrap_or(if is_plain { 1.0 } else { irregular });
         given.or(spacing).map(|side| side * scale)
     };
     match &tone.shape {
-        Shape::Rect { width, height, overlap, .. } => sized([*width, *height], *overlap),
-        Shape::Hexagon { size, overlap, .. }
-        | Shape::Triangle { size, overlap, .. }
-        | Shape::Trapezoid { size, overlap, .. } => sized([*size, None], *overlap),
+        Shape::Rect { width, height, overlap, .. } => sized([*width, *height], *overlap, IRREGULAR_OVERLAP),
+        Shape::Hexagon { size, overlap, .. } => sized([*size, None], *overlap, IRREGULAR_OVERLAP),
+        Shape::Triangle { size, overlap, .. } | Shape::Trapezoid { size, overlap, .. } => {
+            sized([*size, None], *overlap, POINTED_OVERLAP)
+        }
         Shape::Stamp { outline, size, overlap, .. } => {
             let bounds = ring_bounds(outline);
             let drawn = Length::mm(bounds.width().max(bounds.height()));
-            sized([Some(size.unwrap_or(drawn)), None], *overlap)
+            sized([Some(size.unwrap_or(drawn)), None], *overlap, IRREGULAR_OVERLAP)
         }
         Shape::Cell { .. } | Shape::Voronoi { .. } => None,
     }

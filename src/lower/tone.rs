@@ -6,7 +6,7 @@ use crate::diag::{Code, Diagnostic, did_you_mean};
 use crate::field::Field;
 use crate::geom::{Angle, Length};
 use crate::scene::{
-    AngleRule, Blend, Domain, Edge, Fill, Ground, Link, Over, Placement, Shape, Stack, Tone as SceneTone,
+    AngleRule, Blend, Domain, Edge, Fill, Ground, Hand, Link, Over, Placement, Shape, Stack, Tone as SceneTone,
 };
 use crate::span::Span;
 use crate::syntax::ast::{Argument, Expr, ExprKind, Property, ToneBody};
@@ -40,7 +40,7 @@ struct Given {
 }
 
 /// The properties of tones with what each takes.
-const PROPERTIES: [(&str, Slot); 13] = [
+const PROPERTIES: [(&str, Slot); 14] = [
     ("place", Slot::of(Kind::Placement)),
     ("domain", Slot::words(&["canvas", "region"])),
     ("bleed", Slot::of(Kind::Length)),
@@ -54,13 +54,14 @@ const PROPERTIES: [(&str, Slot); 13] = [
     ("over", Slot::words(&["print", "knockout"])),
     ("ground", Slot::or_words(Kind::Fill, &["nearest"])),
     ("edge", Slot::words(&["clip", "whole", "centre"])),
+    ("hand", Slot::of(Kind::Hand)),
 ];
 
 /// Properties without which nothing can be painted.
 const REQUIRED: [&str; 2] = ["place", "fill"];
 
 /// Properties that a later version draws.
-const LATER: [&str; 4] = ["darkness", "hand", "range", "solid"];
+const LATER: [&str; 3] = ["darkness", "range", "solid"];
 
 /// The direction of a ground's lines, which no tile turns: the diagonal that the hand takes.
 const GROUND_DEGREES: f64 = 45.0;
@@ -387,6 +388,10 @@ impl ToneValue {
             Some(Given { value: Value::Field(TypedField { field, .. }), span, .. }) => (field.clone(), *span),
             _ => (Field::constant(1.0), span),
         };
+        let (hand, hand_span) = match self.get("hand") {
+            Some(Given { value: Value::Hand(hand), span, .. }) => (*hand, *span),
+            _ => (Hand::RULED, span),
+        };
         Some(SceneTone {
             place: (**placement).clone(),
             place_span: place.span,
@@ -438,6 +443,8 @@ impl ToneValue {
                 Some("centre") => Edge::Centre,
                 _ => Edge::Clip,
             },
+            hand,
+            hand_span,
         })
     }
 

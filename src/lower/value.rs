@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use crate::field::Field;
 use crate::region::Region;
-use crate::scene::{AngleRule, Colour, Fill, InkMark, Placement, Shape};
+use crate::scene::{AngleRule, Colour, Fill, Hand, InkMark, Placement, Shape};
 use crate::span::{SourceId, Span};
 
 use super::tone::ToneValue;
@@ -34,6 +34,7 @@ pub(super) enum Value {
     Shape(Rc<Shape>),
     Angles(Rc<AngleRule>),
     Fill(Rc<Fill>),
+    Hand(Hand),
     Tone(Rc<ToneValue>),
     /// Strokes and fills of a file.
     Drawing(Rc<[InkMark]>),
@@ -110,6 +111,7 @@ pub(super) enum Kind {
     Shape,
     Angles,
     Fill,
+    Hand,
     Tone,
     /// Not a type that can be named: what `ink` takes.
     Drawing,
@@ -119,7 +121,7 @@ pub(super) enum Kind {
 
 impl Kind {
     /// The kinds that have a name.
-    pub(super) const NAMED: [Self; 19] = [
+    pub(super) const NAMED: [Self; 20] = [
         Self::Number,
         Self::Length,
         Self::Angle,
@@ -138,6 +140,7 @@ impl Kind {
         Self::Shape,
         Self::Angles,
         Self::Fill,
+        Self::Hand,
         Self::Tone,
     ];
 
@@ -161,6 +164,7 @@ impl Kind {
             Self::Shape => "shape",
             Self::Angles => "angles",
             Self::Fill => "fill",
+            Self::Hand => "hand",
             Self::Tone => "tone",
             Self::Drawing => "drawing",
             Self::Word => "word",
@@ -192,6 +196,7 @@ impl Kind {
             Self::Shape => "a shape",
             Self::Angles => "an angle rule",
             Self::Fill => "a fill",
+            Self::Hand => "a hand",
             Self::Tone => "a tone",
             Self::Drawing => "a drawing",
             Self::Word => "a word",
@@ -227,6 +232,7 @@ impl Value {
             Self::Shape(_) => Kind::Shape,
             Self::Angles(_) => Kind::Angles,
             Self::Fill(_) => Kind::Fill,
+            Self::Hand(_) => Kind::Hand,
             Self::Tone(_) => Kind::Tone,
             Self::Drawing(_) => Kind::Drawing,
             Self::Word(_) => Kind::Word,

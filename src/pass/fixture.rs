@@ -4,8 +4,8 @@ use crate::field::Field;
 use crate::geom::{Length, Point, Rect};
 use crate::region::Region;
 use crate::scene::{
-    AngleRule, Blend, Canvas, Cap, Colour, Depth, Domain, Edge, Fill, FillKind, Hatch, Link, Over, Paint, Placement,
-    Repeat, Shape, Stack, Tone,
+    AngleRule, Blend, Canvas, Cap, Colour, Depth, Domain, Edge, Fill, FillKind, Hand, Hatch, Link, Over, Paint,
+    Placement, Repeat, Shape, Stack, Tone,
 };
 use crate::span::{Sources, Span, Syntax};
 
@@ -56,6 +56,8 @@ pub(crate) fn paint(canvas: &Canvas, place: Placement, angle: AngleRule) -> Pain
             over: Over::Print,
             ground: None,
             edge: Edge::Clip,
+            hand: Hand::RULED,
+            hand_span: span,
         },
         span,
     }

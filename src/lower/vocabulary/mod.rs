@@ -4,6 +4,7 @@ mod directions;
 mod fields;
 mod fills;
 mod gradients;
+mod hands;
 mod images;
 mod mathematics;
 mod placements;
@@ -23,19 +24,20 @@ use super::value::{FieldUnit, Kind, TypedField, Value};
 use crate::field::{Field, Node};
 
 /// Every table of signatures with the kind of place that it belongs to.
-const TABLES: [(Option<Kind>, &[Signature]); 8] = [
+const TABLES: [(Option<Kind>, &[Signature]); 9] = [
     (Some(Kind::Region), regions::SIGNATURES),
     (Some(Kind::Field), fields::SIGNATURES),
     (Some(Kind::Placement), placements::SIGNATURES),
     (Some(Kind::Angles), placements::ANGLES),
     (Some(Kind::Shape), shapes::SIGNATURES),
     (Some(Kind::Fill), fills::SIGNATURES),
+    (Some(Kind::Hand), hands::SIGNATURES),
     (Some(Kind::Drawing), regions::DRAWINGS),
     (None, mathematics::SIGNATURES),
 ];
 
 /// Names of the language that this version does not draw.
-const LATER: [&str; 3] = ["coloured", "hand", "tuned"];
+const LATER: [&str; 2] = ["coloured", "tuned"];
 
 /// Whether a name belongs to the language but not to this version.
 pub(super) fn is_later(name: &str) -> bool {

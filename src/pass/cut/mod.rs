@@ -6,6 +6,7 @@
 mod layers;
 mod stamp;
 mod standing;
+mod unsteady;
 pub(crate) mod voronoi;
 
 use rayon::prelude::*;
@@ -41,7 +42,8 @@ struct Chunk {
 }
 
 /// Cuts the tiles of a paint. Sites, links and angles belong to the same paint. One warning is added where k
-/// had to be clamped on tiles that are drawn, and one where no tile lies on the region.
+/// had to be clamped on tiles that are drawn, one where no tile lies on the region, and one for each thing that the hand
+/// does too much of.
 pub fn cut(
     paint: &Paint,
     canvas: &Canvas,
@@ -71,6 +73,7 @@ pub fn cut(
         Blend::Contour => chunks.iter().flat_map(|chunk| &chunk.most).map(|&full| Layers { full, part: 0.0 }).collect(),
     };
     warnings.extend(clamped(paint, &field, &standing));
+    warnings.extend(unsteady::warnings(paint, sites));
     // A region off the canvas was warned of where it was found.
     if !visible.is_empty() && standing.iter().all(|&standing| standing == Standing::Absent) {
         let message = format!("`{}` has no tile on its region", paint.name);

@@ -32,7 +32,7 @@ impl<'a> Ground<'a> {
     pub(super) fn new(region: &'a Region, paint: &Paint) -> Self {
         let corners = region.polygons().iter().flat_map(|polygon| polygon.rings()).filter_map(|ring| ring.first());
         let hatches = paint.tone.fill.iter().filter_map(|fill| fill.kind.hatch());
-        let margin = hatches.map(|hatch| hatch.pen.to_mm() / 2.0).fold(0.0, f64::max);
+        let margin = hatches.map(|hatch| paint.tone.hand.reach(hatch.pen).to_mm()).fold(0.0, f64::max);
         Self { region, corners: corners.copied().collect(), margin: margin + TOUCH }
     }
 

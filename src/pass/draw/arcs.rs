@@ -45,7 +45,7 @@ pub(super) fn draw(
     layer: &Layer<'_>,
     hatch: &Hatch,
     scratch: &mut Scratch,
-    out: &mut Batch,
+    out: &mut [Batch],
 ) -> Result<(), Exceeded> {
     spread(job, layer, hatch, scratch);
     look(job, layer, scratch);

@@ -8,10 +8,13 @@ use crate::scene::{Blend, Hatch};
 
 use super::budget::{BANK, DOT, Exceeded, LINE};
 use super::curves::look;
+use super::edge::Nib;
+use super::hand::Pull;
 use super::job::{Job, Layer, Scratch};
 use super::lattice::is_drawn;
-use super::lines::{CRUMB, interleaved};
+use super::lines::interleaved;
 use super::palette::Batch;
+use super::stroke::CRUMB;
 
 /// How crosses are set.
 pub(super) struct Crossing<'a> {
@@ -30,7 +33,7 @@ pub(super) fn draw(
     layer: &Layer<'_>,
     crossing: &Crossing<'_>,
     scratch: &mut Scratch,
-    out: &mut Batch,
+    out: &mut [Batch],
 ) -> Result<(), Exceeded> {
     let (lines, along) = interleaved(job, layer, crossing.hatch, crossing.spacing, scratch);
     look(job, layer, scratch);
@@ -39,17 +42,22 @@ pub(super) fn draw(
     job.budget.work(lines.count() * LINE as f64)?;
     let cost = 2 * (DOT + if layer.is_clipped { BANK } else { 0 });
     let mut is_backwards = false;
+    let bundle = layer.bundle.as_ref();
     for (i, v) in lines.places() {
+        let v = bundle.map_or(v, |bundle| v + bundle.shift(i, lines.step()));
         let Some(span) = scratch.curves.area.along((v, v)).filter(|_| is_drawn(i, layer.share)) else { continue };
         let row = along.over(span);
         job.budget.work(row.count() * cost as f64)?;
         let count = row.count() as u64;
         for place in 0..count {
-            let Some(u) = row.place(if is_backwards { count - 1 - place } else { place }) else { continue };
-            cross(job, layer, crossing, Point::new(u, v), scratch, out)?;
+            let Some((mark, u)) = row.place(if is_backwards { count - 1 - place } else { place }) else { continue };
+            let pull = Pull::mark(bundle, crossing.hatch, i, mark);
+            let u = bundle.map_or(u, |bundle| u + bundle.shift_along(i, mark, row.step()));
+            let crossing = Crossing { hatch: &pull.hatch, ..*crossing };
+            cross(job, layer, &crossing, Point::new(u, v), scratch, &mut out[pull.weight])?;
         }
         is_backwards = !is_backwards;
-        if out.lines.len() > job.budget.limit() {
+        if out.iter().any(|batch| batch.lines.len() > job.budget.limit()) {
             return Err(Exceeded::Marks);
         }
     }
@@ -124,7 +132,7 @@ pub(super) fn draw_arm(
     out: &mut Batch,
 ) {
     if is_clipped {
-        job.bank.clip(frame, 0.0, crossing.hatch, &mut scratch.ranges, &mut scratch.edge);
+        job.bank.clip(frame, 0.0, Nib::of(crossing.hatch), &mut scratch.ranges, &mut scratch.edge);
     }
     // Arms that are meant to be short are not too short.
     let shortest = (crossing.hatch.shortest.min(crossing.size).to_mm() - TOLERANCE).max(CRUMB);

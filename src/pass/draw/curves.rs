@@ -5,18 +5,22 @@
 //! rounding, and in their whole width to the region, there within [`CUTTING`].
 
 use crate::field::Node;
+use crate::geom::bezier::cubics;
 use crate::geom::clip::{Frame, Ranges, TOLERANCE};
-use crate::geom::{Figure, Length, Point, Rect, Vec2, chain};
+use crate::geom::{Cubic, Figure, Length, Point, Rect, Vec2, chain};
 use crate::region::FLATTENING;
 use crate::scene::{Blend, Cap, Hatch};
 
 use super::budget::{BANK, CURVE, DRAWN, Exceeded, SAMPLE};
-use super::cutout::Cutout;
+use super::cutout::{Cutout, unite};
 use super::edge::Bank;
+use super::hand::{Pull, Wander};
 use super::job::{Job, Layer, Scratch as JobScratch};
 use super::lattice::{Lattice, is_drawn};
-use super::lines::{CRUMB, spread};
+use super::lines::spread;
 use super::palette::Batch;
+use super::run::Run;
+use super::stroke::CRUMB;
 
 /// Where a curve comes near the region's outline it is looked at in steps of this many millimetres: ink reaches over the
 /// outline by half of it at most, in notches that are narrower.
@@ -27,6 +31,9 @@ pub(super) const ROUNDNESS: Length = FLATTENING;
 
 /// The most curves of one stroke; more are finer than anything that can be seen.
 const MOST_CURVES: f64 = 1e6;
+
+/// How far along a stroke may wander into an area, for every millimetre that it comes off its line.
+const MARGIN: f64 = 4.0;
 
 /// Halvings in the search for the place where a curve crosses something.
 const HALVINGS: usize = 30;
@@ -56,16 +63,23 @@ pub(super) struct Scratch {
     pub(super) whole: Cutout,
     /// What is drawn in.
     pub(super) area: Cutout,
+    /// What strokes run on into.
+    partner: Cutout,
     /// What is hidden; the list may be longer than there are covers.
     pub(super) hidden: Vec<Cutout>,
     /// The stroke at hand.
     pub(super) chain: Vec<Point>,
+    /// Boxes around its curves.
+    boxes: Vec<Rect>,
     /// A seen part of it.
     piece: Vec<Point>,
     /// What is left of it.
     pub(super) ranges: Ranges,
     pub(super) found: Vec<(f64, f64)>,
     spans: Vec<(f64, f64)>,
+    /// From where to where strokes are drawn in one go, whatever hides parts of them.
+    wholes: Vec<(f64, f64)>,
+    run: Run,
 }
 
 /// Draws the strokes of a layer.
@@ -75,7 +89,7 @@ pub(super) fn draw(
     hatch: &Hatch,
     course: &impl Course,
     scratch: &mut JobScratch,
-    out: &mut Batch,
+    out: &mut [Batch],
 ) -> Result<(), Exceeded> {
     let lattice = spread(job, layer, hatch, scratch);
     look(job, layer, scratch);
@@ -94,17 +108,29 @@ pub(super) fn draw_lines(
     course: &impl Course,
     lattice: Lattice,
     scratch: &mut JobScratch,
-    out: &mut Batch,
+    out: &mut [Batch],
 ) -> Result<(), Exceeded> {
     job.budget.work(lattice.count() * CURVE as f64)?;
+    let bundle = layer.bundle.as_ref();
+    let length = scratch.whole.along().1 - scratch.whole.along().0;
     let mut is_backwards = false;
     for (i, v) in lattice.places() {
         if !is_drawn(i, layer.share) {
             continue;
         }
-        let Some(range) = course.range(&scratch.curves.area, v) else { continue };
+        let pull = Pull::line(bundle, hatch, i);
+        let (v, wander) =
+            bundle.map_or((v, Wander::NONE), |bundle| (v + bundle.shift(i, lattice.step()), bundle.wander(i, length)));
+        let Some(mut range) = course.range(&scratch.curves.area, v) else { continue };
+        if let Some(more) = layer.partner.and_then(|_| course.range(&scratch.curves.partner, v)) {
+            range = (range.0.min(more.0), range.1.max(more.1));
+        }
+        // A stroke that wanders into the area there may come from farther along.
+        let margin = MARGIN * wander.amplitude();
+        let range = (range.0 - pull.over.0 - margin, range.1 + pull.over.1 + margin);
         trace(job, course, (i, v), range, &mut scratch.curves.chain)?;
-        if stroke(job, layer, hatch, is_backwards, scratch, out)? {
+        wander.bend(&mut scratch.curves.chain);
+        if stroke(job, layer, &pull, is_backwards, scratch, out)? {
             is_backwards = !is_backwards;
         }
     }
@@ -135,6 +161,9 @@ pub(super) fn look(job: &Job<'_>, layer: &Layer<'_>, scratch: &mut JobScratch) {
     let JobScratch { covers, curves, .. } = scratch;
     curves.whole.set(Figure::convex(layer.outline), &layer.frame);
     curves.area.set(layer.area, &layer.frame);
+    if let Some(partner) = layer.partner {
+        curves.partner.set(partner, &layer.frame);
+    }
     if curves.hidden.len() < covers.len() {
         curves.hidden.resize_with(covers.len(), Cutout::default);
     }
@@ -147,19 +176,33 @@ pub(super) fn look(job: &Job<'_>, layer: &Layer<'_>, scratch: &mut JobScratch) {
 pub(super) fn stroke(
     job: &Job<'_>,
     layer: &Layer<'_>,
-    hatch: &Hatch,
+    pull: &Pull,
     is_backwards: bool,
     scratch: &mut JobScratch,
-    out: &mut Batch,
+    out: &mut [Batch],
 ) -> Result<bool, Exceeded> {
     let (covers, looks) = (scratch.covers.len(), &mut scratch.looks);
-    let Scratch { area, hidden, chain, ranges, found, .. } = &mut scratch.curves;
+    let Scratch { area, partner, hidden, chain, boxes, ranges, found, wholes, .. } = &mut scratch.curves;
     let bounds = chain::bounds(chain);
     if !area.may_meet(&bounds) {
         return Ok(false);
     }
-    area.cut(chain, 0, found);
-    ranges.reset(0.0, chain::count(chain) as f64);
+    boxes.clear();
+    boxes.extend(cubics(chain).map(Cubic::bounds));
+    ranges.reset(0.0, boxes.len() as f64);
+    area.cut_within(chain, boxes, ranges.as_slice(), found);
+    wholes.clear();
+    // Where the ground goes on with it, a stroke ends where the farther one of the tile and its cell does.
+    if layer.partner.is_some() {
+        wholes.append(found);
+        partner.cut_within(chain, boxes, ranges.as_slice(), found);
+        wholes.append(found);
+        unite(wholes);
+        area.cut_within(chain, boxes, ranges.as_slice(), found);
+    } else {
+        overshoot(chain, pull.over, found);
+        wholes.extend_from_slice(found);
+    }
     ranges.intersect(found);
     for cover in &mut hidden[..covers] {
         if ranges.is_empty() {
@@ -167,16 +210,32 @@ pub(super) fn stroke(
         }
         job.budget.look(looks, 1)?;
         if cover.may_meet(&bounds) {
-            job.budget.look(looks, chain::count(chain) as u64)?;
-            cover.cut(chain, 0, found);
+            job.budget.look(looks, boxes.len() as u64)?;
+            cover.cut_within(chain, boxes, ranges.as_slice(), found);
             found.iter().for_each(|&(start, end)| ranges.subtract(start, end));
         }
     }
-    contour(job, layer, hatch.pitch, scratch)?;
+    contour(job, layer, pull.hatch.pitch, scratch)?;
     if layer.is_clipped {
-        clip(job, &layer.frame, hatch, scratch)?;
+        clip(job, &layer.frame, &pull.hatch, scratch)?;
     }
-    emit(job, &layer.frame, hatch, is_backwards, &mut scratch.curves, out)
+    emit(job, &layer.frame, pull, is_backwards, &mut scratch.curves, out)
+}
+
+/// Draws ranges of a chain out at both ends by so many millimetres, as far as the chain goes.
+fn overshoot(chain: &[Point], over: (f64, f64), ranges: &mut Vec<(f64, f64)>) {
+    if over == (0.0, 0.0) {
+        return;
+    }
+    let end = chain::count(chain) as f64;
+    let further = |s: f64, by: f64| {
+        let speed = chain::at(chain, s).1.length();
+        if speed > 0.0 { by / speed } else { 0.0 }
+    };
+    for range in ranges.iter_mut() {
+        *range = ((range.0 - further(range.0, over.0)).max(0.0), (range.1 + further(range.1, over.1)).min(end));
+    }
+    unite(ranges);
 }
 
 /// Keeps the parts of the stroke where the field has this layer, if layers end along the field.
@@ -285,26 +344,38 @@ pub(super) fn keep<E>(
 pub(super) fn emit(
     job: &Job<'_>,
     frame: &Frame,
-    hatch: &Hatch,
+    pull: &Pull,
     is_backwards: bool,
     scratch: &mut Scratch,
-    out: &mut Batch,
+    out: &mut [Batch],
 ) -> Result<bool, Exceeded> {
-    let Scratch { chain, ranges, piece, .. } = scratch;
+    let Scratch { chain, ranges, piece, wholes, run, .. } = scratch;
+    let out = &mut out[pull.weight];
     let end = chain::count(chain) as f64;
-    let before = out.curves.len();
+    let before = out.len();
     let mut draw = |ranges: &[(f64, f64)]| -> Result<(), Exceeded> {
         piece.clear();
-        ranges.iter().for_each(|&range| chain::part(chain, range, piece));
+        let taper = match ranges {
+            [range] => run.out(chain, wholes, pull, *range),
+            // A closed stroke has no end to run out at.
+            _ => None,
+        };
+        match taper {
+            Some(_) => run.joints().windows(2).for_each(|pair| chain::part(chain, (pair[0], pair[1]), piece)),
+            None => ranges.iter().for_each(|&range| chain::part(chain, range, piece)),
+        }
         // A stroke of which nothing was cut is meant to be as short as it is.
         let is_whole = matches!(ranges, [(from, to)] if *from == 0.0 && *to == end);
-        if is_whole || is_long(piece, hatch.shortest) {
+        if is_whole || is_long(piece, pull.hatch.shortest) {
             job.budget.work((chain::count(piece) as u64 * DRAWN) as f64)?;
             piece.iter_mut().for_each(|p| *p = frame.page(p.x, p.y));
             if is_backwards {
                 piece.reverse();
             }
-            put(piece, out);
+            match taper {
+                Some(taper) => out.tapers.push(piece, run.widths(&taper, pull, is_backwards)),
+                None => out.curves.push(piece),
+            }
         }
         Ok(())
     };
@@ -315,7 +386,7 @@ pub(super) fn emit(
     if let Some(ends) = ends {
         draw(&ends)?;
     }
-    if out.curves.len() > job.budget.limit() { Err(Exceeded::Marks) } else { Ok(out.curves.len() > before) }
+    if out.len() > job.budget.limit() { Err(Exceeded::Marks) } else { Ok(out.len() > before) }
 }
 
 /// The ranges of a chain that are strokes by themselves, and the two that are one: a closed chain that is cut elsewhere runs
@@ -328,11 +399,6 @@ pub(super) fn pieces<'r>(chain: &[Point], ranges: &'r [(f64, f64)]) -> (&'r [(f6
         }
         ranges => (ranges, None),
     }
-}
-
-/// Puts one curved stroke down: a chain in its place on the page.
-fn put(chain: &[Point], out: &mut Batch) {
-    out.curves.push(chain);
 }
 
 /// Whether a chain is no crumb.

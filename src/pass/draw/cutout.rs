@@ -3,7 +3,7 @@
 use crate::geom::bezier::cubics;
 use crate::geom::clip::Frame;
 use crate::geom::hull::Hull;
-use crate::geom::{Figure, Point, Rect};
+use crate::geom::{Figure, Point, Rect, chain};
 
 /// Ranges that come so near to each other, in a curve's parameter, are one: pieces of an outline share sides.
 const SEAM: f64 = 1e-9;
@@ -69,6 +69,37 @@ impl Cutout {
         self.pieces().iter().filter_map(|piece| piece.line(a, b)).for_each(visit);
     }
 
+    /// The ranges of a chain that lie in it, ascending, as far as they may share something with other ranges of it. `boxes` lie
+    /// around the chain's curves.
+    pub(super) fn cut_within(
+        &mut self,
+        chain: &[Point],
+        boxes: &[Rect],
+        ranges: &[(f64, f64)],
+        found: &mut Vec<(f64, f64)>,
+    ) {
+        found.clear();
+        let pieces =
+            if self.count == 0 { std::slice::from_mut(&mut self.outline) } else { &mut self.pieces[..self.count] };
+        for piece in pieces.iter_mut() {
+            let mut done = 0;
+            for &(start, end) in ranges {
+                let last = (end.ceil() as usize).min(boxes.len());
+                for number in done.max(start as usize)..last {
+                    if piece.may_meet(&boxes[number])
+                        && let Some(cubic) = chain::curve(chain, number)
+                    {
+                        piece.cut(&cubic, number, found);
+                    }
+                }
+                done = done.max(last);
+            }
+        }
+        if self.count > 0 {
+            unite(found);
+        }
+    }
+
     /// The ranges of a chain that lie in it, ascending. `number` is that of the chain's first curve.
     pub(super) fn cut(&mut self, chain: &[Point], number: usize, found: &mut Vec<(f64, f64)>) {
         found.clear();
@@ -86,7 +117,7 @@ impl Cutout {
 }
 
 /// Sorts ranges and makes one of those that touch.
-fn unite(ranges: &mut Vec<(f64, f64)>) {
+pub(super) fn unite(ranges: &mut Vec<(f64, f64)>) {
     ranges.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     ranges.dedup_by(|next, last| {
         let touches = next.0 <= last.1 + SEAM;

@@ -34,9 +34,22 @@ impl Dashes {
         ((end - start + self.dash) / self.period).ceil() + 1.0
     }
 
-    /// Appends the dashes of line `number`, which lies at `v`, that reach into a range, in order.
-    pub(super) fn cut(&self, (start, end): (f64, f64), (number, v): (i64, f64), out: &mut Vec<(f64, f64)>) {
-        let middle = if number.rem_euclid(2) == 0 { 0.0 } else { self.period / 2.0 } - v * self.drift;
+    /// The middle of a dash of line `number`, which lies at `v`.
+    fn middle(&self, (number, v): (i64, f64)) -> f64 {
+        let bond = if number.rem_euclid(2) == 0 { 0.0 } else { self.period / 2.0 };
+        bond - v * self.drift
+    }
+
+    /// The dash of a line whose middle is nearest to a place.
+    pub(super) fn around(&self, u: f64, line: (i64, f64)) -> (f64, f64) {
+        let middle = self.middle(line);
+        let middle = middle + ((u - middle) / self.period).round() * self.period;
+        (middle - self.dash / 2.0, middle + self.dash / 2.0)
+    }
+
+    /// Appends the dashes of a line that reach into a range, in order.
+    pub(super) fn cut(&self, (start, end): (f64, f64), line: (i64, f64), out: &mut Vec<(f64, f64)>) {
+        let middle = self.middle(line);
         let first = ((start - middle - self.dash / 2.0) / self.period).ceil();
         for i in 0..=self.count((start, end)) as u64 {
             let dash = middle + (first + i as f64) * self.period - self.dash / 2.0;
@@ -66,6 +79,7 @@ mod tests {
         assert_eq!(cut(0), [(-1.0, 1.0), (2.0, 4.0)]);
         assert_eq!(cut(-1), [(-2.5, -0.5), (0.5, 2.5)]);
         assert_eq!(cut(3), cut(-1));
+        assert_eq!([0.9, 2.1].map(|u| dashes.around(u, (0, 0.0))), cut(0)[..]);
     }
 
     #[test]

@@ -4,7 +4,8 @@ use crate::geom::clip::TOLERANCE;
 use crate::geom::{Length, Point};
 use crate::scene::{Blend, Hatch};
 
-use super::budget::{BANK, DOT, Exceeded, LINE};
+use super::budget::{BANK, Budget, DOT, Exceeded, LINE};
+use super::hand::{Bundle, weighed};
 use super::job::{Job, Layer, Scratch};
 use super::lattice::{Lattice, is_drawn};
 use super::lines::interleaved;
@@ -28,18 +29,48 @@ impl<'a> Dotting<'a> {
     }
 }
 
+/// A dot of a row.
+pub(super) struct Dot {
+    /// Its place along the row.
+    pub(super) u: f64,
+    pub(super) radius: f64,
+    /// Its place among the weights of its size.
+    pub(super) weight: usize,
+}
+
+impl Dot {
+    /// The dot `mark` of row `number`, which stands at `u` where no hand moves it.
+    pub(super) fn new(
+        bundle: Option<&Bundle>,
+        dotting: &Dotting<'_>,
+        (number, mark): (i64, i64),
+        u: f64,
+        step: f64,
+    ) -> Self {
+        let Some(bundle) = bundle else { return Self { u, radius: dotting.radius, weight: 0 } };
+        let weight = bundle.weight_of(number, mark);
+        let radius = weighed(Length::mm(dotting.radius), bundle.hand(), weight).to_mm();
+        Self { u: u + bundle.shift_along(number, mark, step), radius, weight }
+    }
+}
+
 /// Draws the dots of a layer.
 pub(super) fn draw(
     job: &Job<'_>,
     layer: &Layer<'_>,
     dotting: &Dotting<'_>,
     scratch: &mut Scratch,
-    out: &mut Batch,
+    out: &mut [Batch],
 ) -> Result<(), Exceeded> {
     let (lines, along) = interleaved(job, layer, dotting.hatch, dotting.spacing, scratch);
     let radius = dotting.radius;
-    let inner = |(low, high): (f64, f64)| (low + radius, high - radius);
-    let lines = lines.over(inner(scratch.area.across()));
+    let hand = &job.paint.tone.hand;
+    let inner = |(low, high): (f64, f64), step: f64| {
+        // Dots may stray into the area from places outside it.
+        let margin = radius * (1.0 - hand.pen) - hand.spacing * step;
+        (low + margin, high - margin)
+    };
+    let lines = lines.over(inner(scratch.area.across(), lines.step()));
     job.budget.work(lines.count() * LINE as f64)?;
     let cost = DOT + if layer.is_clipped { BANK } else { 0 };
     let mut is_backwards = false;
@@ -47,26 +78,47 @@ pub(super) fn draw(
         if !is_drawn(i, layer.share) {
             continue;
         }
-        scratch.area.ranges(v, &mut scratch.others);
+        let v = layer.bundle.map_or(v, |bundle| v + bundle.shift(i, lines.step()));
+        scratch.area.ranges(&v, &mut scratch.others);
         if scratch.others.is_empty() {
             continue;
         }
-        let start = out.dots.len();
+        let starts: Vec<usize> = out.iter().map(|batch| batch.dots.len()).collect();
+        let mut last = i64::MIN;
         for span in 0..scratch.others.len() {
-            let row = along.over(inner(scratch.others[span]));
+            let row = along.over(inner(scratch.others[span], along.step()));
             job.budget.work(row.count() * cost as f64)?;
-            for (_, u) in row.places() {
-                let centre = layer.frame.page(u, v);
-                if is_free(job, layer, centre, radius, scratch)? {
-                    out.dots.push(centre);
+            for (j, u) in row.places() {
+                // One that could stray into two spans is drawn once.
+                if j <= last {
+                    continue;
+                }
+                last = j;
+                let dot = Dot::new(layer.bundle.as_ref(), dotting, (i, j), u, along.step());
+                let centre = layer.frame.page(dot.u, v);
+                if is_free(job, layer, centre, dot.radius, scratch)? {
+                    out[dot.weight].dots.push(centre);
                 }
             }
         }
-        if is_backwards {
-            out.dots[start..].reverse();
-        }
+        end_row(out, &starts, is_backwards, job.budget)?;
         is_backwards = !is_backwards;
-        if out.dots.len() > job.budget.limit() {
+    }
+    Ok(())
+}
+
+/// Turns the new dots of a row round where the pen comes from its far end. `starts` says where they start.
+pub(super) fn end_row(
+    out: &mut [Batch],
+    starts: &[usize],
+    is_backwards: bool,
+    budget: &Budget,
+) -> Result<(), Exceeded> {
+    for (batch, &start) in out.iter_mut().zip(starts) {
+        if is_backwards {
+            batch.dots[start..].reverse();
+        }
+        if batch.dots.len() > budget.limit() {
             return Err(Exceeded::Marks);
         }
     }

@@ -19,6 +19,27 @@ pub(super) struct Bank<'a> {
     corners: Corners,
 }
 
+/// How far a stroke's ink reaches from its line, in millimetres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Nib {
+    /// To either side.
+    pub(super) half: f64,
+    /// Beyond both ends.
+    pub(super) cap: f64,
+}
+
+impl Nib {
+    /// That of a straight stroke of the hatch's pen.
+    pub(super) fn of(hatch: &Hatch) -> Self {
+        let half = hatch.pen.to_mm() / 2.0;
+        let cap = match hatch.cap {
+            Cap::Butt => 0.0,
+            Cap::Round => half,
+        };
+        Self { half, cap }
+    }
+}
+
 /// Memory that is used again for every stroke.
 #[derive(Default)]
 pub(super) struct Scratch {
@@ -60,13 +81,9 @@ impl<'a> Bank<'a> {
     ///
     /// Between two neighbouring corners the outline is straight, so that what a line across the stroke's width meets is
     /// bounded by what lines beside the corners and along the stroke's edges meet: only those are tried.
-    pub(super) fn clip(&self, frame: &Frame, v: f64, hatch: &Hatch, ranges: &mut Ranges, scratch: &mut Scratch) {
+    pub(super) fn clip(&self, frame: &Frame, v: f64, nib: Nib, ranges: &mut Ranges, scratch: &mut Scratch) {
         let (Some(first), Some(last)) = (ranges.as_slice().first(), ranges.as_slice().last()) else { return };
-        let half = hatch.pen.to_mm() / 2.0;
-        let cap = match hatch.cap {
-            Cap::Butt => 0.0,
-            Cap::Round => half,
-        };
+        let Nib { half, cap } = nib;
         let half = half - TOUCH.min(half / 2.0);
         let ends = (first.0 - cap, last.1 + cap);
         let Scratch { spans, kept, corners } = scratch;

@@ -21,15 +21,16 @@ use super::budget::{BANK, DOT, Exceeded, LINE, PROFILE};
 use super::crosses::{ARMS, Crossing, draw_arm};
 use super::curves::{Course, clip, disc, emit, trace};
 use super::dashes::Dashes;
-use super::dots::Dotting;
+use super::dots::{Dot, Dotting, end_row};
 use super::edge::{Bank, Contact};
+use super::hand::{Bundle, Line, Pull, Wander};
 use super::job::{Job, Piece, Scratch};
 use super::lattice::Lattice;
-use super::lines::Line;
 use super::motif::Motif;
 use super::palette::Batch;
 use super::scribble::Scribble;
 use super::solid;
+use super::stroke::Stroke;
 use super::torus::overhang;
 use super::waves::Waves;
 use super::weave::{Along, Bond, Weave};
@@ -46,19 +47,52 @@ pub(super) fn draw(job: &Job<'_>, canvas: &Canvas) -> Result<Vec<Vec<Batch>>, Ex
     }
 }
 
+/// The areas over which tiles are continued: the cells of their tiling, or the Voronoi cells of their sites.
+pub(super) struct Around<'a> {
+    tiling: Option<&'a Tiling>,
+    cells: Cells<'a>,
+}
+
+impl<'a> Around<'a> {
+    /// `delaunay` links the sites by their triangulation.
+    pub(super) fn new(paint: &Paint, sites: &'a Sites, delaunay: &'a Graph) -> Self {
+        let tiling = match paint.tone.shape {
+            Shape::Cell { .. } => sites.tiling.as_ref(),
+            Shape::Rect { .. }
+            | Shape::Hexagon { .. }
+            | Shape::Triangle { .. }
+            | Shape::Trapezoid { .. }
+            | Shape::Stamp { .. }
+            | Shape::Voronoi { .. } => None,
+        };
+        Self { tiling, cells: Cells::new(sites, delaunay, Length::ZERO, Length::ZERO) }
+    }
+
+    /// Writes the area of a tile; `spare` is overwritten.
+    pub(super) fn outline(&self, tile: usize, area: &mut Vec<Point>, spare: &mut Vec<Point>) {
+        match self.tiling {
+            Some(tiling) => {
+                area.clear();
+                area.extend_from_slice(tiling.cell(tile));
+            }
+            None => self.cells.outline(tile, area, spare),
+        }
+    }
+}
+
 /// Hatches the gaps as the nearest tile is hatched. Tiles that are left out at the region's edge have gaps too.
 fn nearest(job: &Job<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
-    let delaunay = delaunay(job.paint, job.sites);
-    let source = Source::new(job.paint, job.sites, delaunay.as_ref().unwrap_or(job.graph));
-    let pens = job.paint.tone.fill.iter().filter_map(|fill| fill.kind.hatch());
-    let margin = pens.map(|hatch| hatch.pen.to_mm() / 2.0).fold(0.0, f64::max);
+    let Some(around) = job.around else { return Ok(Vec::new()) };
+    let hand = &job.paint.tone.hand;
+    let hatches = job.paint.tone.fill.iter().filter_map(|fill| fill.kind.hatch());
+    let margin = hatches.map(|hatch| hand.reach(hatch.pen).to_mm()).fold(0.0, f64::max);
     job.in_chunks(|scratch, tile, out| {
         let outline = job.tiles.outline(tile);
         if job.tiles.layers[tile].is_blank() || outline.is_empty() {
             return Ok(());
         }
         let (mut cell, mut spare) = (Vec::new(), Vec::new());
-        source.outline(tile, &mut cell, &mut spare);
+        around.outline(tile, &mut cell, &mut spare);
         // Of an outline that is not convex corners alone do not tell.
         let is_gapless = job.tiles.is_drawn(tile)
             && job.tiles.figure(tile).is_convex()
@@ -72,54 +106,18 @@ fn nearest(job: &Job<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
         scratch.covers.clear();
         job.budget.look(&mut scratch.looks, job.nearby.candidates(site, reach))?;
         job.nearby.near(site, reach, |other| scratch.covers.push(other));
-        job.draw_layers(&Piece { tile, beyond: Some(&cell), is_clipped: contact == Contact::Crossing }, scratch, out)
+        let (beyond, is_clipped) = (Some(cell.as_slice()), contact == Contact::Crossing);
+        let partner = hand.has_ends().then(|| job.tiles.figure(tile));
+        job.draw_layers(&Piece { tile, beyond, is_clipped, partner }, scratch, out)
     })
 }
 
-/// The links that bound Voronoi cells, where those of the tiles are others: cells that share edges are not all of them.
+/// The triangulation that bounds Voronoi cells, where the links of the tiles are others: cells that share edges are not all
+/// the neighbours.
 pub(super) fn delaunay(paint: &Paint, sites: &Sites) -> Option<Graph> {
     match paint.tone.link {
         Link::Delaunay => None,
-        Link::Edges => tiling(paint, sites).is_none().then(|| link::link(&sites.without_images(), Link::Delaunay)),
-    }
-}
-
-/// The tiling whose cells the tiles were drawn in from, if they were.
-fn tiling<'a>(paint: &Paint, sites: &'a Sites) -> Option<&'a Tiling> {
-    match paint.tone.shape {
-        Shape::Cell { .. } => sites.tiling.as_ref(),
-        Shape::Rect { .. }
-        | Shape::Hexagon { .. }
-        | Shape::Triangle { .. }
-        | Shape::Trapezoid { .. }
-        | Shape::Stamp { .. }
-        | Shape::Voronoi { .. } => None,
-    }
-}
-
-/// The area that is nearest to each tile.
-pub(super) enum Source<'a> {
-    Tiling(&'a Tiling),
-    Cells(Cells<'a>),
-}
-
-impl<'a> Source<'a> {
-    pub(super) fn new(paint: &Paint, sites: &'a Sites, graph: &'a Graph) -> Self {
-        match tiling(paint, sites) {
-            Some(tiling) => Self::Tiling(tiling),
-            None => Self::Cells(Cells::new(sites, graph, Length::ZERO, Length::ZERO)),
-        }
-    }
-
-    /// Writes the area of a tile that is no image.
-    pub(super) fn outline(&self, tile: usize, ring: &mut Vec<Point>, spare: &mut Vec<Point>) {
-        match self {
-            Self::Tiling(tiling) => {
-                ring.clear();
-                ring.extend_from_slice(tiling.cell(tile));
-            }
-            Self::Cells(cells) => cells.outline(tile, ring, spare),
-        }
+        Link::Edges => Some(link::link(&sites.without_images(), Link::Delaunay)),
     }
 }
 
@@ -181,7 +179,10 @@ fn even_over(
     let frame = Frame::new(canvas.bounds().centre(), direction);
     let mut region = Profile::default();
     region.set(&job.bank.region().bounds().corners(), &frame);
-    let plane = Plane { job, frame, region };
+    // A hand's unevenness does not go round, so that what goes round is ruled.
+    let is_ruled = job.paint.tone.hand.is_ruled() || weave.is_some();
+    let bundle = (!is_ruled).then(|| Bundle::ground(job.paint));
+    let plane = Plane { job, frame, region, bundle };
     let rows = |spacing: Length| match weave {
         Some(weave) => weave.along(spacing, Bond::Rows),
         None => Along { step: spacing.to_mm(), drift: 0.0 },
@@ -220,7 +221,7 @@ fn even_over(
             let drawn = (0..job.tiles.len()).filter(|&tile| job.tiles.is_drawn(tile));
             let outlines = drawn.map(|tile| job.tiles.outline(tile).to_vec()).collect();
             let mut batches = job.palette.batches();
-            let batch = &mut batches[job.palette.ground_slot()];
+            let batch = &mut batches[job.palette.ground_slots().start];
             solid::push(&job.bank.region().difference(&Region::from_rings(outlines, FillRule::NonZero)), batch);
             job.budget.mark(batch.len())?;
             Ok(vec![batches])
@@ -234,6 +235,8 @@ struct Plane<'a> {
     frame: Frame,
     /// The box around it.
     region: Profile,
+    /// How a hand draws it, if not ruled.
+    bundle: Option<Bundle>,
 }
 
 impl Plane<'_> {
@@ -242,27 +245,40 @@ impl Plane<'_> {
         &self,
         pitch: Length,
         across: (f64, f64),
-        draw: impl Fn(&mut Scratch, &[(i64, f64)], &mut Batch) -> Result<(), Exceeded> + Sync,
+        draw: impl Fn(&mut Scratch, &[(i64, f64)], &mut [Batch]) -> Result<(), Exceeded> + Sync,
     ) -> Result<Vec<Vec<Batch>>, Exceeded> {
         let lattice = Lattice::cell(across, 0.0, pitch.to_mm());
         self.job.budget.work(lattice.count() * (LINE + BANK) as f64)?;
         if lattice.count() > self.job.budget.limit() as f64 {
             return Err(Exceeded::Marks);
         }
-        let lines: Vec<(i64, f64)> = lattice.places().collect();
+        // Lines stray by less than half a step, so that they stay in order.
+        let shift = |number| self.bundle.map_or(0.0, |bundle| bundle.shift(number, lattice.step()));
+        let lines: Vec<(i64, f64)> = lattice.places().map(|(number, v)| (number, v + shift(number))).collect();
         lines
             .par_chunks(BAND)
             .map(|band| {
                 let mut batches = self.job.palette.batches();
-                let batch = &mut batches[self.job.palette.ground_slot()];
+                let own = &mut batches[self.job.palette.ground_slots()];
                 let mut scratch = Scratch::default();
-                draw(&mut scratch, band, batch)?;
+                draw(&mut scratch, band, own)?;
                 self.job.budget.work(scratch.looks as f64)?;
-                batch.end_bundle();
-                self.job.budget.mark(batch.len())?;
+                own.iter_mut().for_each(Batch::end_bundle);
+                self.job.budget.mark(own.iter().map(Batch::len).sum())?;
                 Ok(batches)
             })
             .collect()
+    }
+
+    /// How far a mark lies off its place along its line in millimetres.
+    fn shift_along(&self, number: i64, mark: i64, step: f64) -> f64 {
+        self.bundle.map_or(0.0, |bundle| bundle.shift_along(number, mark, step))
+    }
+
+    /// How a line wanders.
+    fn wander(&self, number: i64) -> Wander {
+        let (start, end) = self.region.along();
+        self.bundle.map_or(Wander::NONE, |bundle| bundle.wander(number, end - start))
     }
 
     fn lines(&self, hatch: &Hatch, dashes: Option<&Dashes>) -> Result<Vec<Vec<Batch>>, Exceeded> {
@@ -277,9 +293,11 @@ impl Plane<'_> {
                 for (start, end) in hidden {
                     scratch.ranges.subtract(start, end);
                 }
-                self.job.bank.clip(&self.frame, v, hatch, &mut scratch.ranges, &mut scratch.edge);
-                let line = Line { frame: &self.frame, number, v, is_backwards: number.rem_euclid(2) == 1 };
-                line.emit(self.job, hatch, dashes, scratch, out)?;
+                let wander = self.wander(number);
+                let line = Line { wander, ..Line::ruled(&self.frame, number, v) };
+                let stroke = Stroke::new(line, self.bundle.as_ref(), hatch, number.rem_euclid(2) == 1);
+                self.job.bank.clip(&self.frame, v, stroke.nib(), &mut scratch.ranges, &mut scratch.edge);
+                stroke.emit(self.job, dashes, scratch, out)?;
             }
             Ok(())
         })
@@ -296,19 +314,15 @@ impl Plane<'_> {
         self.in_bands(dotting.hatch.pitch, self.region.across(), |scratch, band, out| {
             for &(number, v) in band {
                 self.job.budget.work(row.count() * (DOT + BANK) as f64)?;
-                let start = out.dots.len();
-                for (_, u) in dotting.along(along, -v * drift).places() {
-                    let centre = self.frame.page(u, v);
-                    if self.is_free(centre, dotting.radius, scratch)? {
-                        out.dots.push(centre);
+                let starts: Vec<usize> = out.iter().map(|batch| batch.dots.len()).collect();
+                for (mark, u) in dotting.along(along, -v * drift).places() {
+                    let dot = Dot::new(self.bundle.as_ref(), dotting, (number, mark), u, row.step());
+                    let centre = self.frame.page(dot.u, v);
+                    if self.is_free(centre, dot.radius, scratch)? {
+                        out[dot.weight].dots.push(centre);
                     }
                 }
-                if number.rem_euclid(2) == 1 {
-                    out.dots[start..].reverse();
-                }
-                if out.dots.len() > self.job.budget.limit() {
-                    return Err(Exceeded::Marks);
-                }
+                end_row(out, &starts, number.rem_euclid(2) == 1, self.job.budget)?;
             }
             Ok(())
         })
@@ -333,7 +347,9 @@ impl Plane<'_> {
         self.in_bands(hatch.pitch, (low - reach, high + reach), |scratch, band, out| {
             for &line in band {
                 trace(self.job, course, line, along, &mut scratch.curves.chain)?;
-                self.stroke(hatch, line.0.rem_euclid(2) == 1, scratch, out)?;
+                self.wander(line.0).bend(&mut scratch.curves.chain);
+                let pull = Pull::line(self.bundle.as_ref(), hatch, line.0);
+                self.stroke(&pull, line.0.rem_euclid(2) == 1, scratch, out)?;
             }
             Ok(())
         })
@@ -345,14 +361,16 @@ impl Plane<'_> {
         let grown = |(low, high): (f64, f64)| (low - reach, high + reach);
         let row = |middle: f64| Lattice::cell(grown(self.region.along()), middle, motif.spacing.to_mm());
         self.in_bands(motif.hatch.pitch, grown(self.region.across()), |scratch, band, out| {
-            for &(_, v) in band {
+            for &(number, v) in band {
                 let row = row(-v * drift);
                 self.job.budget.work(row.count() * (cost + BANK) as f64)?;
-                for (_, u) in row.places() {
+                for (mark, u) in row.places() {
+                    let pull = Pull::mark(self.bundle.as_ref(), motif.hatch, number, mark);
+                    let u = u + self.shift_along(number, mark, row.step());
                     for strokes in motif.figure.0.iter() {
                         scratch.curves.chain.clear();
                         scratch.curves.chain.extend(strokes.iter().map(|&p| p + Vec2::new(u, v)));
-                        self.stroke(motif.hatch, false, scratch, out)?;
+                        self.stroke(&pull, false, scratch, out)?;
                     }
                 }
             }
@@ -363,10 +381,10 @@ impl Plane<'_> {
     /// Draws what no tile lies on of the stroke in `scratch`.
     fn stroke(
         &self,
-        hatch: &Hatch,
+        pull: &Pull,
         is_backwards: bool,
         scratch: &mut Scratch,
-        out: &mut Batch,
+        out: &mut [Batch],
     ) -> Result<(), Exceeded> {
         let Scratch { curves, looks, .. } = scratch;
         curves.ranges.reset(0.0, chain::count(&curves.chain) as f64);
@@ -386,8 +404,8 @@ impl Plane<'_> {
                 found.iter().for_each(|&(start, end)| ranges.subtract(start, end));
             });
         }
-        clip(self.job, &self.frame, hatch, scratch)?;
-        emit(self.job, &self.frame, hatch, is_backwards, &mut scratch.curves, out)?;
+        clip(self.job, &self.frame, &pull.hatch, scratch)?;
+        emit(self.job, &self.frame, pull, is_backwards, &mut scratch.curves, out)?;
         Ok(())
     }
 
@@ -398,15 +416,20 @@ impl Plane<'_> {
             for &(number, v) in band {
                 let row = row(-v * drift);
                 self.job.budget.work(row.count() * (DOT + BANK) as f64)?;
-                let start = out.lines.len();
-                for (_, u) in row.places() {
-                    self.cross(crossing, self.frame.page(u, v), scratch, out)?;
+                let starts: Vec<usize> = out.iter().map(|batch| batch.lines.len()).collect();
+                for (mark, u) in row.places() {
+                    let pull = Pull::mark(self.bundle.as_ref(), crossing.hatch, number, mark);
+                    let crossing = Crossing { hatch: &pull.hatch, ..*crossing };
+                    let middle = self.frame.page(u + self.shift_along(number, mark, row.step()), v);
+                    self.cross(&crossing, middle, scratch, &mut out[pull.weight])?;
                 }
-                if number.rem_euclid(2) == 1 {
-                    out.lines[start..].reverse();
-                }
-                if out.lines.len() > self.job.budget.limit() {
-                    return Err(Exceeded::Marks);
+                for (batch, start) in out.iter_mut().zip(starts) {
+                    if number.rem_euclid(2) == 1 {
+                        batch.lines[start..].reverse();
+                    }
+                    if batch.lines.len() > self.job.budget.limit() {
+                        return Err(Exceeded::Marks);
+                    }
                 }
             }
             Ok(())
@@ -432,7 +455,7 @@ impl Plane<'_> {
             let Scratch { ranges, area, .. } = scratch;
             self.job.nearby.near(middle, half, |tile| {
                 area.set(self.job.nearby.figure(tile), &frame);
-                area.spans(0.0, |(start, end)| ranges.subtract(start, end));
+                area.spans(&0.0, |(start, end)| ranges.subtract(start, end));
             });
             draw_arm(self.job, crossing, &frame, true, scratch, out);
         }
@@ -483,7 +506,7 @@ impl Plane<'_> {
             scratch.area.set(self.job.nearby.figure(tile), &self.frame);
             let start = band.partition_point(|line| line.1 < low);
             for (line, hidden) in band.iter().zip(&mut hidden).skip(start).take_while(|(line, _)| line.1 <= high) {
-                scratch.area.spans(line.1, |span| hidden.push(span));
+                scratch.area.spans(&line.1, |span| hidden.push(span));
                 scratch.looks += 1;
             }
             self.job.budget.look(&mut scratch.looks, PROFILE)?;

@@ -5,14 +5,16 @@ use rayon::prelude::*;
 use crate::geom::clip::{Frame, Profile, Ranges};
 use crate::geom::{Angle, Figure, Point, Vec2};
 use crate::scene::{FillKind, Paint, Stack};
-use crate::stage::{Angles, Graph, Sites, Standing, Tiles};
+use crate::stage::{Angles, Sites, Standing, Tiles};
 
 use super::budget::{Budget, Exceeded, PROFILE};
 use super::edge::{self, Bank};
+use super::ground::Around;
+use super::hand::Bundle;
 use super::nearby::Nearby;
 use super::palette::{Batch, Palette};
 use super::silhouette::Silhouette;
-use super::{arcs, crosses, curves, dashes, dots, lines, motif, nawaami, scribble, solid, waves};
+use super::{arcs, crosses, curves, dashes, dots, lines, motif, nawaami, scribble, solid, stroke, waves};
 
 /// Tiles that one thread draws at a time.
 const CHUNK: usize = 256;
@@ -23,13 +25,14 @@ const CHUNK: usize = 256;
 pub(super) struct Job<'a> {
     pub(super) paint: &'a Paint,
     pub(super) sites: &'a Sites,
-    pub(super) graph: &'a Graph,
     pub(super) angles: &'a Angles,
     pub(super) tiles: &'a Tiles,
     pub(super) bank: &'a Bank<'a>,
     pub(super) nearby: &'a Nearby<'a>,
     pub(super) palette: &'a Palette,
     pub(super) budget: &'a Budget,
+    /// The areas over which the ground continues tiles.
+    pub(super) around: Option<&'a Around<'a>>,
 }
 
 /// Memory that is used again for every tile.
@@ -41,6 +44,8 @@ pub(super) struct Scratch {
     pub(super) whole: Profile,
     /// The outline they are drawn in.
     pub(super) area: Silhouette,
+    /// What strokes run on into.
+    pub(super) partner: Silhouette,
     /// Silhouettes of the covers; the list may be longer than they are many.
     pub(super) shadows: Vec<Silhouette>,
     /// What is left of a line.
@@ -48,6 +53,12 @@ pub(super) struct Scratch {
     /// Other ranges along it.
     pub(super) others: Vec<(f64, f64)>,
     pub(super) edge: edge::Scratch,
+    /// From where to where strokes along a line are drawn in one go.
+    pub(super) wholes: Vec<(f64, f64)>,
+    pub(super) stroke: stroke::Scratch,
+    /// A tile's cell, and what it is cut with.
+    pub(super) cell: Vec<Point>,
+    pub(super) spare: Vec<Point>,
     pub(super) curves: curves::Scratch,
     /// Looks that the budget does not know of as yet.
     pub(super) looks: u64,
@@ -61,6 +72,8 @@ pub(super) struct Layer<'a> {
     pub(super) share: f64,
     /// The site, and the direction of this layer's strokes.
     pub(super) frame: Frame,
+    /// The same before the hand turned it.
+    pub(super) unturned: Frame,
     /// The tile's outline, over which lines are spread.
     pub(super) outline: &'a [Point],
     /// What is drawn in: the outline, or where the tile's pattern is continued, an area beyond it.
@@ -69,6 +82,10 @@ pub(super) struct Layer<'a> {
     pub(super) is_continued: bool,
     /// Whether the region's outline comes near.
     pub(super) is_clipped: bool,
+    /// What strokes run on into beyond the area: the other one of the tile and its cell.
+    pub(super) partner: Option<Figure<'a>>,
+    /// How a hand draws it, if not ruled.
+    pub(super) bundle: Option<Bundle>,
 }
 
 /// A tile, or an area that is hatched as one.
@@ -78,6 +95,8 @@ pub(super) struct Piece<'a> {
     pub(super) beyond: Option<&'a [Point]>,
     /// Whether the region's outline comes near.
     pub(super) is_clipped: bool,
+    /// What strokes run on into beyond it: the other one of the tile and its cell.
+    pub(super) partner: Option<Figure<'a>>,
 }
 
 impl Job<'_> {
@@ -115,7 +134,8 @@ impl Job<'_> {
         }
         scratch.covers.clear();
         if self.has_covers() {
-            let radius = self.nearby.radius(tile);
+            let hand = &self.paint.tone.hand;
+            let radius = self.nearby.radius(tile) + (hand.overshoot + hand.wobble).to_mm();
             self.budget.look(&mut scratch.looks, self.nearby.candidates(self.sites.points[tile], radius))?;
             self.nearby.near(self.sites.points[tile], radius, |other| {
                 if self.sites.original(other as usize) > tile {
@@ -124,7 +144,15 @@ impl Job<'_> {
             });
         }
         let is_clipped = self.tiles.standing[tile] == Standing::Clipped;
-        self.draw_layers(&Piece { tile, beyond: None, is_clipped }, scratch, out)
+        let mut cell = std::mem::take(&mut scratch.cell);
+        let around = self.around.filter(|_| self.paint.tone.hand.has_ends());
+        if let Some(around) = around {
+            around.outline(tile, &mut cell, &mut scratch.spare);
+        }
+        let partner = around.map(|_| Figure::convex(&cell));
+        let drawn = self.draw_layers(&Piece { tile, beyond: None, is_clipped, partner }, scratch, out);
+        scratch.cell = cell;
+        drawn
     }
 
     /// Draws all layers of a tile, or of an area as that tile has them, minus the covers in `scratch`.
@@ -136,31 +164,38 @@ impl Job<'_> {
     ) -> Result<(), Exceeded> {
         let layers = self.tiles.layers[piece.tile];
         let figure = self.tiles.figure(piece.tile);
-        let fills = &self.paint.tone.fill;
+        let (fills, hand) = (&self.paint.tone.fill, &self.paint.tone.hand);
         let mut solid_slots = [None; 4];
         for number in 1..=(layers.full + u8::from(layers.part > 0.0)).min(4) {
             let at = usize::from(number - 1).min(fills.len() - 1);
-            let slot = self.palette.slot(at);
+            let slots = self.palette.slots(at);
+            let slot = slots.start;
             let turn = if stands_on_one_lattice(&fills[at].kind) { 1 } else { number };
+            let bundle =
+                (!hand.is_ruled()).then(|| Bundle::new(self.paint, self.sites.original(piece.tile), i64::from(number)));
+            let unturned = Frame::new(self.sites.points[piece.tile], direction(self.angles.0[piece.tile], turn));
             let layer = Layer {
                 number,
                 share: if number <= layers.full { 1.0 } else { layers.part },
-                frame: Frame::new(self.sites.points[piece.tile], direction(self.angles.0[piece.tile], turn)),
+                frame: bundle.map_or(unturned, |bundle| bundle.turned(&unturned)),
+                unturned,
                 outline: figure.outline(),
                 area: piece.beyond.map_or(figure, Figure::convex),
                 is_continued: piece.beyond.is_some(),
                 is_clipped: piece.is_clipped,
+                partner: piece.partner,
+                bundle,
             };
-            let batch = &mut out[slot];
+            let batches = &mut out[slots];
             self.budget.look(&mut scratch.looks, PROFILE * (1 + scratch.covers.len() as u64))?;
             match &fills[at].kind {
-                FillKind::Lines(hatch) => lines::draw(self, &layer, hatch, None, scratch, batch)?,
+                FillKind::Lines(hatch) => lines::draw(self, &layer, hatch, None, scratch, batches)?,
                 FillKind::Dashes { hatch, dash, gap } => {
                     let dashes = dashes::Dashes::new(*dash, *gap);
-                    lines::draw(self, &layer, hatch, Some(&dashes), scratch, batch)?;
+                    lines::draw(self, &layer, hatch, Some(&dashes), scratch, batches)?;
                 }
                 FillKind::Dots { hatch, spacing, radius } => {
-                    dots::draw(self, &layer, &dots::Dotting::new(hatch, *spacing, *radius), scratch, batch)?;
+                    dots::draw(self, &layer, &dots::Dotting::new(hatch, *spacing, *radius), scratch, batches)?;
                 }
                 FillKind::Crosses { hatch, spacing, size } => {
                     crosses::draw(
@@ -168,27 +203,27 @@ impl Job<'_> {
                         &layer,
                         &crosses::Crossing { hatch, spacing: *spacing, size: *size },
                         scratch,
-                        batch,
+                        batches,
                     )?;
                 }
-                FillKind::Arcs(hatch) => arcs::draw(self, &layer, hatch, scratch, batch)?,
+                FillKind::Arcs(hatch) => arcs::draw(self, &layer, hatch, scratch, batches)?,
                 FillKind::Waves { hatch, swing } => {
-                    curves::draw(self, &layer, hatch, &waves::Waves::new(swing), scratch, batch)?;
+                    curves::draw(self, &layer, hatch, &waves::Waves::new(swing), scratch, batches)?;
                 }
                 FillKind::Scribble { hatch, loops, spacing } => {
                     let key = self.sites.original(piece.tile);
                     let scribble = scribble::Scribble::new(self.paint, key, number, *loops, *spacing);
-                    curves::draw(self, &layer, hatch, &scribble, scratch, batch)?;
+                    curves::draw(self, &layer, hatch, &scribble, scratch, batches)?;
                 }
-                FillKind::Nawaami { hatch, swing } => nawaami::draw(self, &layer, hatch, swing, scratch, batch)?,
+                FillKind::Nawaami { hatch, swing } => nawaami::draw(self, &layer, hatch, swing, scratch, batches)?,
                 FillKind::Motif { hatch, spacing, figure } => {
-                    motif::draw(self, &layer, &motif::Motif { hatch, spacing: *spacing, figure }, scratch, batch)?;
+                    motif::draw(self, &layer, &motif::Motif { hatch, spacing: *spacing, figure }, scratch, batches)?;
                 }
                 FillKind::Solid => {
                     // A second coat of the same ink is not seen.
                     if !solid_slots.contains(&Some(slot)) {
                         solid_slots[usize::from(number - 1)] = Some(slot);
-                        solid::draw(self, &layer, &scratch.covers, batch);
+                        solid::draw(self, &layer, &scratch.covers, &mut batches[0]);
                     }
                 }
             }

@@ -130,7 +130,7 @@ impl<'a> Stencil<'a> {
         let mut has_spans = false;
         self.nearby.along(a, b, |tile| {
             silhouette.set(self.nearby.figure(tile), &frame);
-            silhouette.spans(0.0, |(start, end)| {
+            silhouette.spans(&0.0, |(start, end)| {
                 if end <= 0.0 || start >= length {
                     return;
                 }

@@ -54,15 +54,20 @@ impl Lattice {
         Self { range: (first, last), ..self }
     }
 
+    /// From place to place.
+    pub(super) fn step(&self) -> f64 {
+        self.step
+    }
+
     /// How many places there are. It may be too great for a whole number.
     pub(super) fn count(&self) -> f64 {
         (self.range.1 - self.range.0 + 1.0).max(0.0)
     }
 
-    /// A place by how many lie before it.
-    pub(super) fn place(&self, i: u64) -> Option<f64> {
+    /// A place with its number, by how many lie before it.
+    pub(super) fn place(&self, i: u64) -> Option<(i64, f64)> {
         let number = self.range.0 + i as f64;
-        (number <= self.range.1).then(|| self.origin + number * self.step)
+        (number <= self.range.1).then(|| (number as i64, self.origin + number * self.step))
     }
 
     /// The places with their numbers, in order.

@@ -5,15 +5,17 @@
 
 use crate::field::Node;
 use crate::geom::Length;
-use crate::geom::clip::{Frame, TOLERANCE};
+use crate::geom::clip::Frame;
 use crate::scene::{Blend, Hatch};
 
-use super::budget::{BANK, Exceeded, LINE, SAMPLE};
+use super::budget::{BANK, Exceeded, LINE, PROFILE, SAMPLE};
 use super::dashes::Dashes;
+use super::hand::Line;
 use super::job::{Job, Layer, Scratch};
 use super::lattice::{Lattice, is_drawn};
 use super::palette::Batch;
 use super::silhouette::Silhouette;
+use super::stroke::Stroke;
 
 /// Halvings in the search for the place where a layer ends along the field: from a tenth of a millimetre to a millionth.
 const HALVINGS: usize = 24;
@@ -25,18 +27,28 @@ pub(super) fn draw(
     hatch: &Hatch,
     dashes: Option<&Dashes>,
     scratch: &mut Scratch,
-    out: &mut Batch,
+    out: &mut [Batch],
 ) -> Result<(), Exceeded> {
     let lattice = spread(job, layer, hatch, scratch);
     job.budget.work(lattice.count() * LINE as f64)?;
-    set_shadows(job, layer, scratch);
+    set_shadows(job, layer, &layer.frame, scratch);
+    let length = scratch.whole.along().1 - scratch.whole.along().0;
+    let bundle = layer.bundle.as_ref();
     let mut is_backwards = false;
     for (i, v) in lattice.places() {
         if !is_drawn(i, layer.share) {
             continue;
         }
-        scratch.area.ranges(v, &mut scratch.others);
-        scratch.ranges.set(&scratch.others);
+        let line = bundle.map_or_else(
+            || Line::ruled(&layer.frame, i, v),
+            |bundle| bundle.line(&layer.frame, (i, v), lattice.step(), length),
+        );
+        if line.frame != layer.frame {
+            job.budget.look(&mut scratch.looks, PROFILE * (1 + scratch.covers.len() as u64))?;
+            scratch.area.set(layer.area, &line.frame);
+            set_shadows(job, layer, &line.frame, scratch);
+        }
+        ends(layer, &line, scratch);
         let mut looks = 0;
         for shadow in &scratch.shadows[..scratch.covers.len()] {
             if scratch.ranges.is_empty() {
@@ -44,27 +56,27 @@ pub(super) fn draw(
             }
             looks += 1;
             let ranges = &mut scratch.ranges;
-            shadow.spans(v, |(start, end)| ranges.subtract(start, end));
+            shadow.spans(&line, |(start, end)| ranges.subtract(start, end));
         }
         job.budget.look(&mut scratch.looks, looks)?;
-        contour(job, layer, v, hatch.pitch, scratch)?;
+        contour(job, layer, &line, hatch.pitch, scratch)?;
+        let stroke = Stroke::new(line, bundle, hatch, is_backwards);
         if layer.is_clipped && !scratch.ranges.is_empty() {
             job.budget.look(&mut scratch.looks, BANK)?;
-            job.bank.clip(&layer.frame, v, hatch, &mut scratch.ranges, &mut scratch.edge);
+            job.bank.clip(&line.frame, line.v, stroke.nib(), &mut scratch.ranges, &mut scratch.edge);
         }
         if scratch.ranges.is_empty() {
             continue;
         }
-        let line = Line { frame: &layer.frame, number: i, v, is_backwards };
-        line.emit(job, hatch, dashes, scratch, out)?;
+        stroke.emit(job, dashes, scratch, out)?;
         is_backwards = !is_backwards;
     }
     Ok(())
 }
 
-/// Takes the profiles of the layer and spreads lines over it.
+/// Takes the silhouettes of the layer and spreads lines over it. How the hand turns them makes no difference to their number.
 pub(super) fn spread(job: &Job<'_>, layer: &Layer<'_>, hatch: &Hatch, scratch: &mut Scratch) -> Lattice {
-    scratch.whole.set(layer.outline, &layer.frame);
+    scratch.whole.set(layer.outline, &layer.unturned);
     scratch.area.set(layer.area, &layer.frame);
     let pitch = hatch.pitch.to_mm();
     let (low, high) = scratch.whole.across();
@@ -104,25 +116,91 @@ pub(super) fn interleaved(
     }
 }
 
-/// Takes the silhouettes of the tiles that hide parts of this one.
-fn set_shadows(job: &Job<'_>, layer: &Layer<'_>, scratch: &mut Scratch) {
+/// Takes the silhouettes of what strokes run on into and of the tiles that hide parts of them, along a frame.
+fn set_shadows(job: &Job<'_>, layer: &Layer<'_>, frame: &Frame, scratch: &mut Scratch) {
+    if let Some(partner) = layer.partner {
+        scratch.partner.set(partner, frame);
+    }
     let count = scratch.covers.len();
     if scratch.shadows.len() < count {
         scratch.shadows.resize_with(count, Silhouette::default);
     }
     for (shadow, &cover) in scratch.shadows.iter_mut().zip(&scratch.covers) {
-        shadow.set(job.nearby.figure(cover), &layer.frame);
+        shadow.set(job.nearby.figure(cover), frame);
     }
 }
 
+/// Leaves in `scratch.ranges` what the area has of a line, and in `scratch.wholes` from where to where the strokes along it
+/// are drawn in one go, whatever hides parts of them. Where the ground continues tiles, a stroke ends at the farther one of
+/// the tile's edge and its cell's.
+fn ends(layer: &Layer<'_>, line: &Line, scratch: &mut Scratch) {
+    let Scratch { area, partner, ranges, others, wholes, .. } = scratch;
+    area.ranges(line, others);
+    wholes.clear();
+    wholes.extend_from_slice(others);
+    let (Some(bundle), Some(&first), Some(&last)) = (&layer.bundle, others.first(), others.last()) else {
+        ranges.set(others);
+        return;
+    };
+    let over = bundle.overshoots(line.number);
+    if layer.partner.is_none() {
+        // Neighbours that overshoot into each other are one.
+        wholes.iter_mut().for_each(|whole| *whole = (whole.0 - over.0, whole.1 + over.1));
+        wholes.dedup_by(|next, whole| {
+            let touches = next.0 <= whole.1;
+            if touches {
+                whole.1 = next.1;
+            }
+            touches
+        });
+        ranges.set(wholes);
+        return;
+    }
+    let own = (first.0, last.1);
+    let mut other: Option<(f64, f64)> = None;
+    partner.spans(line, |(start, end)| {
+        other = Some(other.map_or((start, end), |other| (other.0.min(start), other.1.max(end))));
+    });
+    let (tile, cell) = match (layer.is_continued, other) {
+        (false, other) => (own, other.unwrap_or(own)),
+        (true, Some(tile)) => (tile, own),
+        (true, None) => {
+            ranges.set(others);
+            return;
+        }
+    };
+    // Beyond a tile's edge its strokes overshoot, beyond a cell's they do not.
+    let whole = (
+        if cell.0 < tile.0 { cell.0 } else { tile.0 - over.0 },
+        if cell.1 > tile.1 { cell.1 } else { tile.1 + over.1 },
+    );
+    wholes.clear();
+    wholes.push(whole);
+    if !layer.is_continued {
+        if let Some(first) = others.first_mut().filter(|_| cell.0 >= tile.0) {
+            first.0 = whole.0;
+        }
+        if let Some(last) = others.last_mut().filter(|_| cell.1 <= tile.1) {
+            last.1 = whole.1;
+        }
+    }
+    ranges.set(others);
+}
+
 /// Keeps the parts of a line where the field has this layer, if layers end along the field.
-fn contour(job: &Job<'_>, layer: &Layer<'_>, v: f64, pitch: Length, scratch: &mut Scratch) -> Result<(), Exceeded> {
+fn contour(
+    job: &Job<'_>,
+    layer: &Layer<'_>,
+    line: &Line,
+    pitch: Length,
+    scratch: &mut Scratch,
+) -> Result<(), Exceeded> {
     let field = &job.paint.tone.k;
     if job.paint.tone.blend != Blend::Contour || matches!(field.node(), Node::Constant(_)) {
         return Ok(());
     }
     let threshold = f64::from(layer.number) - 0.5;
-    let is_in = |u: f64| field.at(layer.frame.page(u, v)) >= threshold;
+    let is_in = |u: f64| field.at(line.page(u)) >= threshold;
     scratch.others.clear();
     for &(start, end) in scratch.ranges.as_slice() {
         let steps = ((end - start) / (pitch.to_mm() / 2.0)).ceil().max(1.0);
@@ -162,54 +240,4 @@ fn cross(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
         }
     }
     (low + high) / 2.0
-}
-
-/// Pieces of no more than this many millimetres are rounding, however short strokes may be.
-pub(super) const CRUMB: f64 = 1e-6;
-
-/// A line of which some ranges are to be drawn.
-pub(super) struct Line<'a> {
-    pub(super) frame: &'a Frame,
-    /// Its number in the lattice.
-    pub(super) number: i64,
-    /// Its place across the frame.
-    pub(super) v: f64,
-    /// Whether the pen comes from the far end: it turns round at the end of every line.
-    pub(super) is_backwards: bool,
-}
-
-impl Line<'_> {
-    /// Draws what is left in `scratch.ranges` and long enough.
-    pub(super) fn emit(
-        &self,
-        job: &Job<'_>,
-        hatch: &Hatch,
-        dashes: Option<&Dashes>,
-        scratch: &mut Scratch,
-        out: &mut Batch,
-    ) -> Result<(), Exceeded> {
-        let mut shortest = hatch.shortest.to_mm();
-        if let Some(dashes) = dashes {
-            scratch.others.clear();
-            for &range in scratch.ranges.as_slice() {
-                job.budget.work(dashes.count(range))?;
-                dashes.cut(range, (self.number, self.v), &mut scratch.others);
-            }
-            scratch.ranges.intersect(&scratch.others);
-            // Dashes that are meant to be short are not too short.
-            shortest = shortest.min(dashes.length());
-        }
-        let shortest = (shortest - TOLERANCE).max(CRUMB);
-        let start = out.lines.len();
-        for &(from, to) in scratch.ranges.as_slice() {
-            if to - from >= shortest {
-                out.lines.push([self.frame.page(from, self.v), self.frame.page(to, self.v)]);
-            }
-        }
-        if self.is_backwards {
-            out.lines[start..].reverse();
-            out.lines[start..].iter_mut().for_each(|line| line.reverse());
-        }
-        if out.lines.len() > job.budget.limit() { Err(Exceeded::Marks) } else { Ok(()) }
-    }
 }

@@ -16,6 +16,7 @@ mod dots;
 mod edge;
 mod forecast;
 mod ground;
+mod hand;
 mod job;
 mod knockout;
 mod lattice;
@@ -24,9 +25,11 @@ mod motif;
 mod nawaami;
 mod nearby;
 mod palette;
+mod run;
 mod scribble;
 mod silhouette;
 mod solid;
+mod stroke;
 mod torus;
 mod waves;
 mod weave;
@@ -45,6 +48,7 @@ use crate::stage::{Angles, Graph, Sites, Tiles};
 
 use budget::{Budget, Exceeded};
 use edge::Bank;
+use ground::Around;
 use job::Job;
 use nearby::Nearby;
 use palette::Palette;
@@ -79,8 +83,20 @@ pub fn draw(
     let &Stages { sites, graph, angles, tiles } = &unrolled.as_ref().map_or(*stages, Unrolled::stages);
     let (bank, nearby) = (Bank::new(&visible), Nearby::new(sites, tiles));
     let (palette, budget) = (Palette::new(paint, setting.ink), Budget::new(limits));
-    let job =
-        Job { paint, sites, graph, angles, tiles, bank: &bank, nearby: &nearby, palette: &palette, budget: &budget };
+    let is_continued = paint.tone.ground == Some(Ground::Nearest);
+    let delaunay = if is_continued { ground::delaunay(paint, sites) } else { None };
+    let around = is_continued.then(|| Around::new(paint, sites, delaunay.as_ref().unwrap_or(graph)));
+    let job = Job {
+        paint,
+        sites,
+        angles,
+        tiles,
+        bank: &bank,
+        nearby: &nearby,
+        palette: &palette,
+        budget: &budget,
+        around: around.as_ref(),
+    };
     layers(&job, canvas, setting).map_err(|exceeded| match exceeded {
         Exceeded::Overlap { .. } => exceeded.diagnostic(limits, paint.tone.place_span).note(paint.span, "painted here"),
         _ => exceeded.diagnostic(limits, paint.span),

@@ -120,7 +120,7 @@ pub(super) fn draw(
     hatch: &Hatch,
     swing: &Swing,
     scratch: &mut Scratch,
-    out: &mut Batch,
+    out: &mut [Batch],
 ) -> Result<(), Exceeded> {
     spread(job, layer, hatch, scratch);
     look(job, layer, scratch);

@@ -1,12 +1,15 @@
 //! From the fills of a tone to the layers of the drawing: which marks lie together.
 //!
-//! A slot is a list of marks of one ink and one pen. Threads fill batches, one for each slot; batches are put together in
+//! A slot is a list of marks of one ink and one pen; where the hand changes the pen, each of its weights has one. Threads fill batches, one for each slot; batches are put together in
 //! the order of the tiles.
+
+use std::ops::Range;
 
 use crate::drawing::{Curves, Dots, Layer, Strokes, Tapers};
 use crate::geom::{Length, Point};
-use crate::scene::{Cap, Colour, Fill, FillKind, Ground, Paint};
+use crate::scene::{Cap, Colour, Fill, FillKind, Ground, Hand, Paint};
 
+use super::hand::{weighed, weights};
 use super::solid;
 
 /// What a slot holds.
@@ -32,32 +35,46 @@ impl Kind {
             FillKind::Solid => Self::Areas,
         }
     }
+
+    /// What is drawn of it with each weight of a hand.
+    fn by_weight(self, hand: &Hand) -> Vec<Self> {
+        let weights = 0..weights(hand);
+        match self {
+            Self::Areas => vec![self],
+            Self::Strokes(pen, cap) => weights.map(|weight| Self::Strokes(weighed(pen, hand, weight), cap)).collect(),
+            Self::Dots(radius) => weights.map(|weight| Self::Dots(weighed(radius, hand, weight))).collect(),
+        }
+    }
 }
 
 /// The slots of a paint.
 pub(super) struct Palette {
     slots: Vec<(Colour, Kind)>,
-    /// The slot of every fill.
-    fills: Vec<usize>,
-    /// The slot of the ground's own fill.
-    ground: usize,
+    /// The slots of every fill, one for each weight.
+    fills: Vec<Range<usize>>,
+    /// The slots of the ground's own fill.
+    ground: Range<usize>,
 }
 
 impl Palette {
     /// `ink` is used by fills without their own.
     pub(super) fn new(paint: &Paint, ink: Colour) -> Self {
         let mut slots = Vec::new();
+        let mut families: Vec<((Colour, Kind), Range<usize>)> = Vec::new();
         let mut slot = |fill: &Fill| {
-            let wanted = (fill.ink.unwrap_or(ink), Kind::of(fill));
-            slots.iter().position(|slot| *slot == wanted).unwrap_or_else(|| {
-                slots.push(wanted);
-                slots.len() - 1
-            })
+            let (ink, kind) = (fill.ink.unwrap_or(ink), Kind::of(fill));
+            if let Some((_, range)) = families.iter().find(|(family, _)| *family == (ink, kind)) {
+                return range.clone();
+            }
+            let start = slots.len();
+            slots.extend(kind.by_weight(&paint.tone.hand).into_iter().map(|kind| (ink, kind)));
+            families.push(((ink, kind), start..slots.len()));
+            start..slots.len()
         };
         // The ground comes first, for it lies lowest.
         let ground = match &paint.tone.ground {
             Some(Ground::Fill { fill, .. }) => slot(fill),
-            Some(Ground::Nearest) | None => 0,
+            Some(Ground::Nearest) | None => 0..0,
         };
         let fills = paint.tone.fill.iter().map(slot).collect();
         Self { slots, fills, ground }
@@ -68,14 +85,14 @@ impl Palette {
         self.slots.iter().map(|_| Batch::default()).collect()
     }
 
-    /// The slot of a fill by its place in the tone's list.
-    pub(super) fn slot(&self, fill: usize) -> usize {
-        self.fills[fill]
+    /// The slots of a fill by its place in the tone's list, one for each weight.
+    pub(super) fn slots(&self, fill: usize) -> Range<usize> {
+        self.fills[fill].clone()
     }
 
-    /// The slot of the ground's own fill.
-    pub(super) fn ground_slot(&self) -> usize {
-        self.ground
+    /// The slots of the ground's own fill, one for each weight.
+    pub(super) fn ground_slots(&self) -> Range<usize> {
+        self.ground.clone()
     }
 
     /// Puts batches together, in order; layers without a mark are left out.

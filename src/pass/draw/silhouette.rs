@@ -3,6 +3,19 @@
 use crate::geom::Figure;
 use crate::geom::clip::{Frame, Profile, TOLERANCE};
 
+/// A line that runs into convex outlines and out again.
+pub(super) trait Meet {
+    /// Where it lies in an outline.
+    fn meet(&self, profile: &Profile) -> Option<(f64, f64)>;
+}
+
+/// The straight line at a place across.
+impl Meet for f64 {
+    fn meet(&self, profile: &Profile) -> Option<(f64, f64)> {
+        profile.span(*self)
+    }
+}
+
 /// The profiles of a figure's convex pieces.
 #[derive(Default)]
 pub(super) struct Silhouette {
@@ -33,16 +46,16 @@ impl Silhouette {
         self.profiles().iter().map(Profile::across).fold((f64::INFINITY, f64::NEG_INFINITY), widened)
     }
 
-    /// Calls `visit` with the ranges of the line at `v` that lie in the pieces. They may touch and come in no order: whoever
+    /// Calls `visit` with the ranges of a line that lie in the pieces. They may touch and come in no order: whoever
     /// takes them away need not care.
-    pub(super) fn spans(&self, v: f64, visit: impl FnMut((f64, f64))) {
-        self.profiles().iter().filter_map(|profile| profile.span(v)).for_each(visit);
+    pub(super) fn spans(&self, line: &impl Meet, visit: impl FnMut((f64, f64))) {
+        self.profiles().iter().filter_map(|profile| line.meet(profile)).for_each(visit);
     }
 
-    /// Writes the ranges of the line at `v` that lie in the figure, ascending, those of touching pieces joined.
-    pub(super) fn ranges(&self, v: f64, out: &mut Vec<(f64, f64)>) {
+    /// Writes the ranges of a line that lie in the figure, ascending, those of touching pieces joined.
+    pub(super) fn ranges(&self, line: &impl Meet, out: &mut Vec<(f64, f64)>) {
         out.clear();
-        self.spans(v, |span| out.push(span));
+        self.spans(line, |span| out.push(span));
         if out.len() > 1 {
             out.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
             out.dedup_by(|next, range| {
@@ -76,11 +89,11 @@ mod tests {
         silhouette.set(figure, &Frame::new(Point::default(), Vec2::new(1.0, 0.0)));
         assert_eq!(silhouette.across(), (0.0, 3.0));
         let mut out = Vec::new();
-        silhouette.ranges(0.5, &mut out);
+        silhouette.ranges(&0.5, &mut out);
         assert_eq!(out, [(0.0, 7.0)]);
-        silhouette.ranges(2.0, &mut out);
+        silhouette.ranges(&2.0, &mut out);
         assert_eq!(out, [(0.0, 1.0), (3.0, 4.0), (6.0, 7.0)]);
-        silhouette.ranges(3.5, &mut out);
+        silhouette.ranges(&3.5, &mut out);
         assert!(out.is_empty());
     }
 }

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod curves;
+mod hand;
 mod laws;
 
 use super::*;
@@ -39,6 +40,15 @@ fn rect_shape(size: Option<f64>, overlap: Option<f64>) -> Shape {
 
 fn voronoi(inset: f64, round: f64) -> Shape {
     Shape::Voronoi { inset: Length::mm(inset), round: Length::mm(round) }
+}
+
+/// A star with five points, which is not convex.
+fn star(radius: f64) -> Shape {
+    let corner = |i: i32| {
+        let radius = if i % 2 == 0 { radius } else { radius * 0.45 };
+        Point::default() + Angle::degrees(36.0 * f64::from(i)).unit() * radius
+    };
+    Shape::Stamp { outline: (0..10).map(corner).collect(), size: None, overlap: None, upright: false }
 }
 
 fn linear(to: Point, start: f64, end: f64) -> Field {
@@ -99,9 +109,7 @@ impl Run {
 
     /// The drawn tile that lies on top at a place.
     fn top(&self, p: Point) -> Option<usize> {
-        (0..self.tiles.len())
-            .rev()
-            .find(|&i| self.tiles.is_drawn(i) && convex_clearance(self.tiles.outline(i), p) > 0.0)
+        (0..self.tiles.len()).rev().find(|&i| self.tiles.is_drawn(i) && self.tiles.figure(i).clearance(p) > 0.0)
     }
 }
 

@@ -74,16 +74,18 @@ pub(super) fn reach(paint: &Paint, stages: &Stages<'_>) -> f64 {
         Some(Ground::Fill { fill, .. }) => ground::beyond(fill),
         Some(Ground::Nearest) => {
             let delaunay = ground::delaunay(paint, stages.sites);
-            let source = ground::Source::new(paint, stages.sites, delaunay.as_ref().unwrap_or(stages.graph));
+            let around = ground::Around::new(paint, stages.sites, delaunay.as_ref().unwrap_or(stages.graph));
             let reach = |(ring, spare): &mut (Vec<Point>, Vec<Point>), tile: usize| {
-                source.outline(tile, ring, spare);
+                around.outline(tile, ring, spare);
                 radius(ring, stages.sites.points[tile])
             };
             let tiles = (0..stages.sites.own()).into_par_iter();
             tiles.map_init(|| (Vec::new(), Vec::new()), reach).reduce(|| 0.0, f64::max)
         }
     };
-    ground.max(widest(stages))
+    let hatches = paint.tone.fill.iter().filter_map(|fill| fill.kind.hatch());
+    let hand = hatches.map(|hatch| paint.tone.hand.reach(hatch.pen).to_mm()).fold(0.0, f64::max);
+    ground.max(widest(stages)) + hand
 }
 
 /// How far beyond the page marks reach, in millimetres.

@@ -31,9 +31,9 @@ impl Budget {
             return Ok(());
         }
         let limit = grouped(self.tiles as f64);
-        let about = grouped(rounded(tiles));
+        let about = about(tiles);
         let call = describe(placement);
-        Err(self.exceeded(placement, format!("`{call}` would place about {about} tiles; the limit is {limit}")))
+        Err(self.exceeded(placement, format!("`{call}` would place {about} tiles; the limit is {limit}")))
     }
 
     /// Asks for one tile more than the `tiles` there are.
@@ -69,10 +69,10 @@ impl Budget {
         }
         let limit = grouped(self.tiles as f64);
         let call = describe(placement);
-        let about = grouped(rounded(cells));
+        let about = about(cells);
         Err(self.exceeded(
             placement,
-            format!("`{call}` would search a grid of about {about} cells, too many for a limit of {limit} tiles"),
+            format!("`{call}` would search a grid of {about} cells, too many for a limit of {limit} tiles"),
         ))
     }
 
@@ -127,6 +127,12 @@ fn rounded(value: f64) -> f64 {
         unit *= 10.0;
     }
     (value / unit).ceil() * unit
+}
+
+/// An estimate in words.
+fn about(number: f64) -> String {
+    let count = grouped(rounded(number));
+    if number < 1e15 { format!("about {count}") } else { count }
 }
 
 /// A number with commas between its thousands.

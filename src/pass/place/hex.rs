@@ -2,6 +2,7 @@
 
 use crate::diag::Diagnostic;
 use crate::geom::Point;
+use crate::geom::clip::convex_overlap;
 use crate::scene::Placement;
 use crate::stage::{Sites, Tiling};
 
@@ -32,29 +33,37 @@ pub(super) fn place(placement: &Placement, ground: &Ground<'_>, spacing: f64) ->
     ground.budget.expect(placement, (columns[1] - columns[0] + 1.0) * 0.5 * (rows[1] - rows[0] + 1.0))?;
     let (mut points, mut tiling) = (Vec::new(), Tiling::default());
     let mut lattice = Rows::new(rows[0] as i64, 2);
+    let frame = extent.corners();
     for row in rows[0] as i64..=rows[1] as i64 {
         let y = down.at(row);
-        let first = columns[0] as i64;
-        let first = first + (first + row).rem_euclid(2);
+        // Heights of corners belong to rows, each of which has its upper ones where the row before has its lower.
+        let (above, below) = (down.between(row - 1), down.between(row));
+        let cell = |column: i64| {
+            let [left, x, right] = [column - 1, column, column + 1].map(|column| across.at(column));
+            [
+                Point::new(x, above[0]),
+                Point::new(right, above[1]),
+                Point::new(right, below[0]),
+                Point::new(x, below[1]),
+                Point::new(left, below[0]),
+                Point::new(left, above[1]),
+            ]
+        };
+        let (mut first, mut last) = (columns[0] as i64, columns[1] as i64);
+        first += (first + row).rem_euclid(2);
+        last -= (last - first).rem_euclid(2);
+        if ground.wants_cells {
+            // At both ends the slanted sides of a cell may miss a corner of the extent.
+            let is_off = |column: i64| first <= last && !convex_overlap(&cell(column), &frame);
+            let (trim_first, trim_last) = (is_off(first), is_off(last));
+            first += if trim_first { 2 } else { 0 };
+            last -= if trim_last { 2 } else { 0 };
+        }
         let start = points.len();
-        let columns = || (first..=columns[1] as i64).step_by(2);
-        points.extend(columns().map(|column| Point::new(across.at(column), y)));
+        points.extend((first..=last).step_by(2).map(|column| Point::new(across.at(column), y)));
         lattice.push(first, points.len() - start);
         if ground.wants_cells {
-            // Heights of corners belong to rows, each of which has its upper ones where the row before has its lower.
-            let (above, below) = (down.between(row - 1), down.between(row));
-            for column in columns() {
-                let [left, x, right] = [column - 1, column, column + 1].map(|column| across.at(column));
-                let ring = [
-                    (x, above[0]),
-                    (right, above[1]),
-                    (right, below[0]),
-                    (x, below[1]),
-                    (left, below[0]),
-                    (left, above[1]),
-                ];
-                tiling.push(&ring.map(|(x, y)| Point::new(x, y)));
-            }
+            (first..=last).step_by(2).for_each(|column| tiling.push(&cell(column)));
         }
     }
     let mut sites = ground.sites(points, spacing, spacing);

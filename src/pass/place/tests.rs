@@ -1,3 +1,5 @@
+mod tilings;
+
 use proptest::prelude::*;
 
 use super::*;
@@ -275,7 +277,7 @@ fn too_many_tiles_are_refused_before_they_are_placed() {
         ),
         (
             Placement::Grid(GridSize::Cells { columns: u32::MAX, rows: u32::MAX }),
-            "`grid(columns: 4294967295, rows: 4294967295)` would place about more than 1,000,000,000,000,000 tiles; the \
+            "`grid(columns: 4294967295, rows: 4294967295)` would place more than 1,000,000,000,000,000 tiles; the \
              limit is 2,000,000",
         ),
         (
@@ -284,7 +286,7 @@ fn too_many_tiles_are_refused_before_they_are_placed() {
         ),
         (
             Placement::Uniform { amount: Amount::AsMany(Box::new(poisson(1e-200, None))) },
-            "`poisson(radius: 1e-200mm)` would place about more than 1,000,000,000,000,000 tiles; the limit is 2,000,000",
+            "`poisson(radius: 1e-200mm)` would place more than 1,000,000,000,000,000 tiles; the limit is 2,000,000",
         ),
     ];
     for (place, message) in cases {

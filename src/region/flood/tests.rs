@@ -141,13 +141,13 @@ fn dark_shapes_hold_a_flood_that_reaches_under_them() {
     let shape = |corners: &[(f64, f64)]| {
         Region::polygon(&corners.iter().map(|&(x, y)| Point::new(x, y)).collect::<Vec<_>>()).unwrap()
     };
-    let bar = shape(&[(9.0, 15.0), (31.0, 15.0), (31.0, 18.0), (9.0, 18.0)]);
+    let bar = shape(&[(10.0, 15.0), (30.0, 15.0), (30.0, 18.0), (10.0, 18.0)]);
     let sliver = shape(&[(9.9, 24.9), (20.0, 24.8), (29.7, 25.0), (20.0, 25.0)]);
     drawing.dark = bar.union(&sliver);
     is(flood(&drawing, (20.0, 12.0), 0.0, Border::Open).unwrap().area(), 20.0 * 5.25);
     // The sliver is thinner than the reach under it, so that it is covered; its tip leaks, or is bridged.
     let leaking = flood(&drawing, (20.0, 20.0), 0.1, Border::Open).unwrap();
-    is(leaking.area(), 20.0 * 12.25);
+    assert!((leaking.area() - 20.0 * 12.25).abs() < 0.1, "{}", leaking.area());
     let held = flood(&drawing, (20.0, 20.0), 0.3, Border::Open).unwrap();
     assert!((held.area() - 20.0 * 7.25).abs() < 1.5, "{}", held.area());
     assert_eq!(flood(&drawing, (20.0, 16.0), 0.1, Border::Open).unwrap_err(), FloodError::OnLine);

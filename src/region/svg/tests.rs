@@ -196,3 +196,64 @@ fn pictures_in_a_file_are_not_looked_at() {
     let drawing = file("<image href='/etc/hostname' width='9' height='9'/><rect id='a' width='1' height='1'/>");
     assert_eq!(bounds(&drawing, Selection::Whole), [0.0, 0.0, 1.0, 1.0]);
 }
+
+#[test]
+fn colours_select_what_has_them() {
+    let drawing = file(
+        "<rect width='10' height='10' fill='#c00000' opacity='0.5'/><rect x='20' width='10' height='10' fill='none' stroke='#c00000'/>
+         <linearGradient id='g'><stop stop-color='#000'/><stop offset='1' stop-color='#fff'/></linearGradient>
+         <rect x='40' width='10' height='10' fill='url(#g)'/>",
+    );
+    assert_eq!(bounds(&drawing, Selection::Colour([0xc0, 0, 0])), [0.0, 0.0, 10.0, 10.0]);
+    // Of a gradient it is the mean.
+    assert_eq!(bounds(&drawing, Selection::Colour([128; 3])), [40.0, 0.0, 50.0, 10.0]);
+    let error = drawing.region(Selection::Colour([1, 2, 3]), None).unwrap_err();
+    assert_eq!(error, SvgError::NoSuchColour { colour: [1, 2, 3], known: vec![[128; 3], [0xc0, 0, 0]] });
+    assert_eq!(drawing.ink(Selection::Colour([0xc0, 0, 0]), None).unwrap().marks.len(), 2);
+}
+
+#[test]
+fn ink_is_what_is_drawn_in_its_order() {
+    use ink::InkShape;
+    let drawing = file(
+        "<g transform='scale(2 8)'><path d='M0 0 C1 0 2 1 3 3' fill='none' stroke='#123' stroke-width='3'/></g>
+         <rect id='both' x='20' width='10' height='10' fill='white' stroke='black' stroke-opacity='0.5' stroke-linecap='round'/>
+         <path id='dashed' d='M0 50 H10' stroke='black' stroke-dasharray='2' stroke-linecap='square'/>
+         <path id='nothing' d='M0 50 H10' stroke='black' stroke-opacity='0'/>",
+    );
+    let marks = drawing.ink(Selection::Whole, None).unwrap().marks;
+    let mm = 25.4 / 96.0;
+    let InkShape::Lines { width, is_round: false, chains } = &marks[0].shape else { panic!("a stroke") };
+    assert_eq!((marks[0].colour, chains.len(), chains[0].len()), ([0x11, 0x22, 0x33, 255], 1, 4));
+    assert!((width.to_mm() - 12.0 * mm).abs() < 1e-4, "{width:?}");
+    assert!(chains[0][3].distance(Point::new(6.0 * mm, 24.0 * mm)) < 1e-3);
+    assert!(matches!(&marks[1].shape, InkShape::Area(area) if (area.area() - 100.0 * mm * mm).abs() < 0.01));
+    let InkShape::Lines { is_round: true, chains, .. } = &marks[2].shape else { panic!("round ends") };
+    assert_eq!((marks[2].colour[3], chains[0].first()), (128, chains[0].last()));
+    // Three dashes of two pixels, each longer by half a pixel at both ends.
+    let InkShape::Lines { chains, .. } = &marks[3].shape else { panic!("dashes") };
+    let lengths: Vec<f64> = chains.iter().map(|c| (c[0].distance(c[c.len() - 1]) / mm * 10.0).round() / 10.0).collect();
+    assert_eq!((lengths, marks.len()), (vec![3.0; 3], 4));
+    assert_eq!(drawing.ink(Selection::Id("nothing"), None).unwrap_err(), SvgError::NotDrawn);
+    assert!(drawing.ink(Selection::Whole, None).unwrap().lacks.is_empty());
+}
+
+#[test]
+fn lines_are_strokes_and_dark_fills() {
+    let drawing = file(
+        "<path d='M0 0 H50' fill='none' stroke='#888'/><path d='M0 5 H50' fill='none' stroke='#f4f4f4'/>
+         <path d='M0 9 H50' stroke='black' stroke-opacity='0.3' fill='none'/>
+         <rect x='20' y='20' width='10' height='10' fill='#a00'/><rect x='40' y='20' width='10' height='10' fill='#fcc'/>
+         <clipPath id='left'><rect width='10' height='96'/></clipPath>
+         <g clip-path='url(#left)'><path d='M0 50 H50' fill='none' stroke='black' stroke-linecap='round' stroke-width='4'/></g>
+         <rect id='pale' x='60' y='60' width='9' height='9' fill='white'/>",
+    );
+    let lines = drawing.lines(Selection::Whole, None).unwrap();
+    let mm = 25.4 / 96.0;
+    assert_eq!(lines.centres.len(), 2);
+    assert!(
+        (lines.centres[1].points[1].x - 10.0 * mm).abs() < 1e-3 && (lines.centres[1].beyond - 2.0 * mm).abs() < 1e-9
+    );
+    assert!((lines.dark.area() - 100.0 * mm * mm).abs() < 0.01);
+    assert_eq!(drawing.lines(Selection::Id("pale"), None).unwrap_err(), SvgError::NoLines);
+}

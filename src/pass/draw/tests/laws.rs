@@ -5,12 +5,13 @@ use proptest::prelude::*;
 use super::*;
 
 /// A hatched paint: what it is placed and cut by.
-fn hatched() -> impl Strategy<Value = (Canvas, Paint)> {
+pub(super) fn hatched() -> impl Strategy<Value = (Canvas, Paint)> {
     let shapes = prop_oneof![
         Just(rect_shape(None, None)),
         Just(rect_shape(Some(1.9), Some(1.3))),
         Just(Shape::Hexagon { size: None, overlap: None, upright: false }),
         Just(Shape::Rect { width: None, height: Some(Length::mm(1.4)), overlap: None, upright: true }),
+        Just(star(1.2)),
         Just(voronoi(0.1, 0.0)),
         Just(voronoi(0.0, 0.4)),
     ];
@@ -47,7 +48,7 @@ proptest! {
             // Some tile, after that of the bundle before, holds all of it, and no later one comes over it.
             let points = || bundle.iter().copied().flat_map(samples);
             let clearance = |tile: usize, p: Point| {
-                if run.tiles.is_drawn(tile) { convex_clearance(run.tiles.outline(tile), p) } else { f64::NEG_INFINITY }
+                if run.tiles.is_drawn(tile) { run.tiles.figure(tile).clearance(p) } else { f64::NEG_INFINITY }
             };
             let is_on_top = |tile: usize| points().all(|p| {
                 clearance(tile, p) > -NEAR && (tile + 1..run.tiles.len()).all(|later| clearance(later, p) < NEAR)
@@ -99,7 +100,7 @@ proptest! {
             for v in places {
                 for u in -400..400 {
                     let p = site + along * (f64::from(u) * STEP) + along.turned() * v;
-                    if convex_clearance(outline, p) > 0.0 && run.top(p) == Some(tile) {
+                    if run.tiles.figure(tile).clearance(p) > 0.0 && run.top(p) == Some(tile) {
                         expected += STEP;
                     }
                 }
@@ -117,10 +118,10 @@ proptest! {
         for bundle in drawn.iter().flat_map(|layer| &layer.dots).flat_map(|dots| dots.bundles()) {
             let tile = run.top(bundle[0]).unwrap();
             for &p in bundle {
-                prop_assert!(convex_clearance(run.tiles.outline(tile), p) > 0.12 - NEAR);
+                prop_assert!(run.tiles.figure(tile).clearance(p) > 0.12 - NEAR);
                 prop_assert!(run.visible.signed_distance(p) > 0.12 - NEAR);
                 for later in (tile + 1..run.tiles.len()).filter(|&i| run.tiles.is_drawn(i)) {
-                    prop_assert!(convex_clearance(run.tiles.outline(later), p) < NEAR - 0.12);
+                    prop_assert!(run.tiles.figure(later).clearance(p) < NEAR - 0.12);
                 }
             }
         }
@@ -155,7 +156,7 @@ proptest! {
         for &line in &ground {
             for p in samples(line) {
                 let tiles = (0..run.tiles.len()).filter(|&i| run.tiles.is_drawn(i));
-                prop_assert!(tiles.map(|i| convex_clearance(run.tiles.outline(i), p)).all(|clearance| clearance < NEAR));
+                prop_assert!(tiles.map(|i| run.tiles.figure(i).clearance(p)).all(|clearance| clearance < NEAR));
             }
             for p in edges(line, pen).into_iter().flat_map(samples) {
                 prop_assert!(run.visible.signed_distance(p) > -NEAR);

@@ -117,7 +117,7 @@ fn statements_know_where_they_stand() {
     assert_eq!(texts[4], "seed 7");
     assert!(texts[13].starts_with("tone plain(\n") && texts[13].ends_with("  k: k\n}"));
     assert!(texts[15].starts_with("layer") && texts[15].ends_with("pen 0.3mm }\n}"));
-    assert!(texts[16].starts_with("if mode") && texts[16].ends_with("outline body pen pen\n}"));
+    assert!(texts[16].starts_with("if mode") && texts[16].ends_with("ink svg(\"figure.svg\", layer: \"hair\")\n}"));
 }
 
 #[test]
