@@ -39,6 +39,7 @@ pub mod scene;
 pub mod span;
 pub mod stage;
 pub mod syntax;
+pub mod wedge;
 
 use diag::{Code, Diagnostic};
 use drawing::Drawing;

@@ -59,6 +59,9 @@ pub struct Canvas {
     /// Whether it goes on beyond its borders.
     #[serde(skip_serializing_if = "Repeat::is_off")]
     pub repeat: Repeat,
+    /// How far ink spreads beyond each edge of a mark; not negative. Darkness reckons with it, drawn widths do not change.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub gain: Length,
 }
 
 impl Canvas {
@@ -329,11 +332,12 @@ pub struct Tone {
     pub angle: AngleRule,
     /// What is drawn in them: an item a layer, the last for all further ones; never empty.
     pub fill: Vec<Fill>,
-    /// Layers a tile.
-    pub k: Field,
-    /// Where `k` stands, for warnings.
+    /// How much is drawn.
+    #[serde(flatten)]
+    pub asked: Asked,
+    /// Where `k` or `darkness` stands, for warnings.
     #[serde(skip)]
-    pub k_span: Span,
+    pub asked_span: Span,
     /// What a fraction of k means.
     pub blend: Blend,
     /// What overlapping tiles of this paint do.
@@ -350,6 +354,47 @@ pub struct Tone {
     /// Where `hand` stands, for warnings.
     #[serde(skip)]
     pub hand_span: Span,
+}
+
+/// How much is drawn in the tiles.
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Asked {
+    /// So many layers a tile, 0 to 4.
+    K(Field),
+    /// A share of the paper, from which layers and spacing follow.
+    Darkness(Darkness),
+}
+
+impl Asked {
+    /// What is asked for at a place: layers or a share of the paper.
+    #[must_use]
+    pub fn field(&self) -> &Field {
+        match self {
+            Self::K(field) | Self::Darkness(Darkness { field, .. }) => field,
+        }
+    }
+}
+
+/// The share of the paper that a tone is to cover with ink.
+#[derive(Debug, Clone, Serialize)]
+pub struct Darkness {
+    /// The share, 0 to 1.
+    pub field: Field,
+    /// What becomes of what the tone cannot print.
+    pub range: Range,
+    /// Tiles that ask for at least so much are inked all over; above 0, at most 1.
+    pub solid: Option<f64>,
+}
+
+/// How the darkness that is asked for is brought into what a tone can print.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Range {
+    /// What is too dark is printed as dark as can be.
+    Clip,
+    /// The range that the field has in the region is stretched or pressed into that of the tone.
+    Fit,
 }
 
 /// How sites are found.

@@ -227,15 +227,27 @@ pub enum Standing {
 pub struct Layers {
     /// Layers that are drawn in full, 0 to 4.
     pub full: u8,
-    /// The share of the next layer's lines that is drawn, in [0, 1).
+    /// What there is of the next layer, in [0, 1): the share of its lines that is drawn, or, where a darkness is asked
+    /// for, how densely they stand, as a share of the fill's own density.
     pub part: f64,
+    /// Whether the tile is inked all over, whatever its layers are.
+    pub is_solid: bool,
 }
 
 impl Layers {
+    /// Inked all over.
+    pub const SOLID: Self = Self { full: 4, part: 0.0, is_solid: true };
+
+    /// Full layers and a part of the next.
+    #[must_use]
+    pub const fn new(full: u8, part: f64) -> Self {
+        Self { full, part, is_solid: false }
+    }
+
     /// Whether nothing is drawn and nothing hidden.
     #[must_use]
     pub fn is_blank(self) -> bool {
-        self.full == 0 && self.part <= 0.0
+        self.full == 0 && self.part <= 0.0 && !self.is_solid
     }
 }
 
@@ -250,7 +262,7 @@ pub struct Tiles {
     pieces: Pieces,
     /// Corners of all pieces of all tiles, as many for each.
     piece_corners: Vec<Point>,
-    /// The field's value at the site, clamped to 0..=4.
+    /// The field's value at the site, clamped to 0..=4; where a darkness is asked for, the layers that came of it.
     pub k: Vec<f64>,
     /// What of it is drawn.
     pub layers: Vec<Layers>,
@@ -307,6 +319,12 @@ impl Tiles {
             self.inside.iter().copied().chain(images.iter().map(|_| false)).collect(),
         )
         .in_pieces(&self.pieces)
+    }
+
+    /// The same tiles with other layers.
+    #[must_use]
+    pub fn with_layers(self, k: Vec<f64>, layers: Vec<Layers>) -> Self {
+        Self { k, layers, ..self }
     }
 
     /// How many tiles there are.

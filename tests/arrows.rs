@@ -26,7 +26,7 @@ const ARROWS: [(&str, &[&str]); 15] = [
         "cli",
         &[
             "back", "diag", "drawing", "field", "geom", "loader", "lower", "pass", "random", "region", "scene", "span",
-            "stage", "syntax",
+            "stage", "syntax", "wedge",
         ],
     ),
 ];

@@ -646,6 +646,45 @@ fn params_are_a_json_schema() {
 }
 
 #[test]
+fn wedges_are_drawn_and_printed() {
+    let desk = Desk::new();
+    desk.put(
+        "tones.kake",
+        "tone fine(d: field, tile: length = 1mm) {
+           place: grid(spacing: tile) fill: lines(pitch: 0.25mm, pen: 0.1mm) darkness: d
+         }
+         tone coarse(k: field = 1) { place: grid(spacing: 1mm) fill: lines(pitch: 0.5mm, pen: 0.1mm) k: k }",
+    );
+    let wedge = desk.kake(&["wedge", "tones.kake", "fine(tile: 1.5mm)", "--steps", "5", "--format", "json"]).json();
+    assert_eq!((&wedge["tone"], &wedge["asks"]), (&"fine(tile: 1.5mm)".into(), &"darkness".into()));
+    let measured = |step: usize| wedge["steps"][step]["measured"].as_f64().expect("it is a number");
+    assert!(measured(0) == 0.0 && (measured(1) - 0.25).abs() < 0.05 && measured(4) > 0.7, "{wedge}");
+
+    let ran =
+        desk.kake(&["wedge", "tones.kake", "coarse", "--steps", "3", "--dpi", "300", "-o", "w.svg", "-o", "w.png"]);
+    assert_eq!((ran.status(), ran.err().as_str()), (0, ""));
+    let lines: Vec<String> = ran.out().lines().map(|line| line.trim_start().to_owned()).collect();
+    assert_eq!(lines.len(), 4, "{lines:?}");
+    assert!(lines[0].starts_with("k ") && lines[1].starts_with("0.000") && lines[3].starts_with("4.000"), "{lines:?}");
+    assert!(String::from_utf8_lossy(&desk.get("w.svg")).contains("k 2.000, prints 0."));
+    assert!(desk.get("w.png").starts_with(b"\x89PNG"));
+    assert!(desk.kake(&["wedge", "tones.kake", "coarse", "--steps", "2", "--format", "csv"]).out().starts_with("k,"));
+    assert_eq!(desk.kake(&["wedge", "scene.kake", "plain", "--steps", "2", "--set", "pen=0.4mm"]).status(), 0);
+
+    desk.put("page.kake", "import \"tones.kake\" as tones");
+    assert_eq!(desk.kake(&["wedge", "page.kake", "tones.fine(d: 0)", "--steps", "2"]).status(), 0);
+    desk.kake(&["wedge", "page.kake"]).refused(1, "declares no tone");
+
+    desk.kake(&["wedge", "tones.kake"]).refused(1, "several tones");
+    desk.kake(&["wedge", "tones.kake", "fone"]).refused(1, "did you mean `fine`?");
+    desk.kake(&["wedge", "tones.kake", "fine(tile: 3deg)"]).refused(1, "kake::type");
+    desk.kake(&["wedge", "tones.kake", "fine(tile: 100mm)"]).refused(1, "megapixels");
+    desk.kake(&["wedge", "tones.kake", "fine", "--steps", "1"]).refused(2, "--steps");
+    desk.kake(&["wedge", "tones.kake", "fine", "-o", "-"]).refused(2, "standard output");
+    desk.kake(&["wedge", "tones.kake", "fine", "-o", "w.gif"]).refused(2, "outputs end in");
+}
+
+#[test]
 fn every_code_is_explained() {
     let desk = Desk::new();
     let list = desk.kake(&["explain"]).out();

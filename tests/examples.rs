@@ -16,7 +16,7 @@ fn build(file: &str) -> Compiled {
 }
 
 fn is_library(path: &Path) -> bool {
-    name(path) == "manga.kake"
+    ["hand.kake", "manga.kake"].contains(&name(path))
 }
 
 #[test]

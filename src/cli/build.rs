@@ -67,7 +67,7 @@ fn parse_seeds(text: &str) -> Result<Seeds, String> {
     if from > to { Err(format!("{from} comes after {to}")) } else { Ok(Seeds(from, to)) }
 }
 
-fn parse_dpi(text: &str) -> Result<f64, String> {
+pub(super) fn parse_dpi(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(dpi) if (1.0..=100_000.0).contains(&dpi) => Ok(dpi),
         _ => Err("a resolution is a number from 1 to 100,000".to_owned()),
@@ -76,14 +76,14 @@ fn parse_dpi(text: &str) -> Result<f64, String> {
 
 /// The kinds of output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+pub(super) enum Kind {
     Svg,
     Png,
     Pdf,
     Json,
 }
 
-fn kind_of(output: &Path) -> Result<Kind, String> {
+pub(super) fn kind_of(output: &Path) -> Result<Kind, String> {
     if output == Path::new("-") {
         return Ok(Kind::Svg);
     }
@@ -255,7 +255,7 @@ fn target(output: &Path, seed: Option<u64>) -> PathBuf {
     }
 }
 
-fn cannot_write(target: &Path, error: &io::Error) -> Ended {
+pub(super) fn cannot_write(target: &Path, error: &io::Error) -> Ended {
     if error.kind() == io::ErrorKind::BrokenPipe {
         return Ended::Done;
     }
@@ -284,7 +284,7 @@ fn check_pixels(compiled: &mut Compiled, limits: &Limits) {
 }
 
 /// Writes one output beside its place; standard output is written at once.
-fn write(
+pub(super) fn write(
     drawing: &Drawing,
     metadata: Option<&Metadata>,
     (kind, form): (Kind, Form),

@@ -17,6 +17,7 @@ mod params;
 mod picture;
 mod progress;
 mod report;
+mod wedge;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -74,6 +75,8 @@ enum Command {
     Ir(ir::IrArgs),
     /// Print a scene's parameters as JSON Schema
     Params(params::ParamsArgs),
+    /// Draw the calibration wedge of a tone, and print what its steps measure
+    Wedge(wedge::WedgeArgs),
     /// Explain a diagnostic's code, or list them all
     Explain(explain::ExplainArgs),
     /// Print a completion script for a shell
@@ -131,6 +134,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Convert(arguments) => convert::run(&arguments),
         Command::Ir(arguments) => ir::run(&arguments),
         Command::Params(arguments) => params::run(&arguments),
+        Command::Wedge(arguments) => wedge::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Completions(arguments) => {
             let mut script = Vec::new();

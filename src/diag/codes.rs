@@ -93,6 +93,9 @@ codes! {
     Duplicate "duplicate" "A name is given twice"
         "Declarations, properties, arguments and the names of paints are each given once. Two imports may bring the same \
          declaration, but not two different ones under one name."
+    Conflict "conflict" "Two properties do not go together"
+        "A tone has one or the other. What a derived tone inherits counts as well: derive it from one that leaves the \
+         other out."
     Missing "missing" "Something required is not given"
         "The call, block or declaration cannot do without the thing that the message names."
     TooMany "too-many-arguments" "A call has more arguments than it takes"
@@ -154,6 +157,10 @@ codes! {
     Clamped "clamped" "Values were brought into their range"
         "A field gives values outside what the property takes; they were clamped. `clamp(f, low, high)` says so in the \
          scene and silences the warning."
+    TooDark "too-dark" "A darkness is more than the tone prints"
+        "However many layers there are, lines leave some paper bare between them. What asks for more is printed as dark \
+         as the tone goes. A tighter pitch, a wider pen or more fills print darker, `solid: 0.9` inks the darkest tiles \
+         all over, and `range: fit` presses the whole picture into the tone's range."
     Checkerboard "checkerboard" "A checkerboard needs a grid"
         "`checkerboard()` alternates along rows and columns, which only `grid(...)` has."
     Repeat "repeat" "This does not go with a canvas that repeats"

@@ -9,7 +9,6 @@ use crate::scene::{Canvas, Colour, Depth, Repeat};
 use crate::span::Span;
 use crate::syntax::ast::{Expr, Property, StatementKind};
 
-use super::call::not_yet;
 use super::convert::Slot;
 use super::cx::Cx;
 use super::eval;
@@ -36,8 +35,7 @@ const SHEETS: [(&str, f64, f64); 14] = [
 const SHEET_NAMES: &[&str] =
     &["a0", "a1", "a2", "a3", "a4", "a5", "a6", "b4", "b5", "jis_b4", "jis_b5", "legal", "letter", "tabloid"];
 
-const PROPERTIES: [&str; 9] = ["size", "bleed", "dpi", "pixels", "paper", "ink", "depth", "unit", "repeat"];
-const LATER: [&str; 1] = ["gain"];
+const PROPERTIES: [&str; 10] = ["size", "bleed", "dpi", "pixels", "paper", "ink", "depth", "unit", "gain", "repeat"];
 
 /// Pixels per inch where neither `dpi` nor `pixels` says otherwise: the least that print shops take for line art.
 const DEFAULT_DPI: f64 = 600.0;
@@ -62,6 +60,7 @@ pub(super) fn default() -> Canvas {
         depth: Depth::Eight,
         unit: Length::mm(1.0),
         repeat: Repeat::Off,
+        gain: Length::ZERO,
     }
 }
 
@@ -101,6 +100,7 @@ pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Option<Canvas> {
     let ink = reader.colour(find("ink"), &[], Some(Colour::BLACK));
     let depth = reader.depth(find("depth"));
     let repeat = reader.repeat(find("repeat"));
+    let gain = reader.gain(find("gain"));
     // A property that is not known may have been meant for it.
     let is_known = |property: &&Property| PROPERTIES.contains(&property.name.name.as_str());
     if find("size").is_none() && given.iter().all(is_known) {
@@ -120,7 +120,7 @@ pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Option<Canvas> {
     let grown = bleed.unwrap_or(Length::ZERO).to_mm();
     let bounds = Rect::new(Point::default(), Point::new(width.to_mm(), height.to_mm())).grown(grown);
     cx.page = Some(Region::rect(bounds));
-    let (paper, ink, depth, unit) = (paper?, ink??, depth?, Length::mm(unit?));
+    let (paper, ink, depth, unit, gain) = (paper?, ink??, depth?, Length::mm(unit?), gain?);
     let (repeat, bleed) = (repeat?, bleed?);
     if repeat == Repeat::Both && bleed > Length::ZERO {
         let message = "a canvas that repeats goes on beyond its borders: it has no bleed";
@@ -131,7 +131,7 @@ pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Option<Canvas> {
         Repeat::Off => None,
         Repeat::Both => Some(Period::new(width, height)),
     };
-    Some(Canvas { width, height, bleed, pixels, dpi, paper, ink, depth, unit, repeat })
+    Some(Canvas { width, height, bleed, pixels, dpi, paper, ink, depth, unit, gain, repeat })
 }
 
 fn check_property(cx: &mut Cx<'_, '_>, property: &Property, earlier: &[&Property]) {
@@ -140,8 +140,6 @@ fn check_property(cx: &mut Cx<'_, '_>, property: &Property, earlier: &[&Property
         let message = format!("the property `{}` is given twice", name.name);
         let note = earlier.name.span;
         cx.report(Diagnostic::error(Code::Duplicate, name.span, message).note(note, "first given here"));
-    } else if LATER.contains(&name.name.as_str()) {
-        cx.report(not_yet(&name.name, name.span));
     } else if !PROPERTIES.contains(&name.name.as_str()) {
         let hint = did_you_mean(&name.name, PROPERTIES)
             .unwrap_or_else(|| format!("a canvas has {}", PROPERTIES.map(|name| format!("`{name}`")).join(", ")));
@@ -200,6 +198,17 @@ impl<'a> Reader<'_, 'a, '_> {
             return Some(mm);
         }
         self.refuse(property.value.span, format!("`{}` must be greater than zero", property.name.name))
+    }
+
+    /// How far ink spreads. Tones whose pens are no wider are refused where they are painted.
+    fn gain(&mut self, property: Option<&'a Property>) -> Option<Length> {
+        let Some(property) = property else { return Some(Length::ZERO) };
+        let mm = eval::expect(self.cx, self.scope, &property.value, Slot::of(Kind::Length)).as_length()?;
+        if !(0.0..=LARGEST).contains(&mm) {
+            return self.refuse(property.value.span, "`gain` must not be negative");
+        }
+        self.cx.gain = Some((Length::mm(mm), property.value.span));
+        Some(Length::mm(mm))
     }
 
     /// How far the picture goes on beyond the page.

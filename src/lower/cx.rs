@@ -40,6 +40,8 @@ pub(super) struct Cx<'a, 'c> {
     pub(super) page: Option<Region>,
     /// The period of a page that repeats.
     pub(super) period: Option<Period>,
+    /// How far ink spreads, and where that is said.
+    pub(super) gain: Option<(Length, Span)>,
     /// Values that were set, by module and name.
     pub(super) set: BTreeMap<(usize, String), &'a params::Set>,
     /// Parameters that have their values, by module and name.
@@ -89,6 +91,7 @@ impl<'a, 'c> Cx<'a, 'c> {
             dpi: None,
             page: None,
             period: None,
+            gain: None,
             set: BTreeMap::new(),
             settled: BTreeMap::new(),
             choices: BTreeMap::new(),

@@ -5,7 +5,7 @@ use crate::field::Field;
 use crate::geom::{Angle, Length, Period, Point, Rect, ring_bounds, whole_steps};
 use crate::region::{FillRule, Operation, Region};
 use crate::scene::{
-    Amount, AngleRule, FillKind, GridSize, Ground, IRREGULAR_OVERLAP, POINTED_OVERLAP, Placement, Shape, Tone,
+    Amount, AngleRule, Asked, FillKind, GridSize, Ground, IRREGULAR_OVERLAP, POINTED_OVERLAP, Placement, Shape, Tone,
 };
 use crate::span::Span;
 
@@ -302,7 +302,11 @@ enum Unit {
 
 /// The fields of a tone, with what they are called and where they stand.
 fn fields<'t>(tone: &'t Tone, given: &ToneValue) -> Vec<(&'static str, &'t Field, Unit, Span)> {
-    let mut fields = vec![("k", &tone.k, Unit::Number, tone.k_span)];
+    let name = match tone.asked {
+        Asked::K(_) => "k",
+        Asked::Darkness(_) => "darkness",
+    };
+    let mut fields = vec![(name, tone.asked.field(), Unit::Number, tone.asked_span)];
     match &tone.angle {
         AngleRule::Along(field) => {
             let at = given.span_of("angle").unwrap_or(tone.place_span);

@@ -3,15 +3,15 @@
 use std::rc::Rc;
 
 use crate::diag::{Code, Diagnostic, did_you_mean};
-use crate::field::Field;
+use crate::field::{Field, Node};
 use crate::geom::{Angle, Length};
 use crate::scene::{
-    AngleRule, Blend, Domain, Edge, Fill, Ground, Hand, Link, Over, Placement, Shape, Stack, Tone as SceneTone,
+    AngleRule, Asked, Blend, Darkness, Domain, Edge, Fill, FillKind, Ground, Hand, Link, Over, Placement, Range, Shape,
+    Stack, Tone as SceneTone,
 };
 use crate::span::Span;
 use crate::syntax::ast::{Argument, Expr, ExprKind, Property, ToneBody};
 
-use super::call::not_yet;
 use super::convert::{Slot, coerce};
 use super::cx::Cx;
 use super::modules::Tone;
@@ -40,7 +40,7 @@ struct Given {
 }
 
 /// The properties of tones with what each takes.
-const PROPERTIES: [(&str, Slot); 14] = [
+const PROPERTIES: [(&str, Slot); 17] = [
     ("place", Slot::of(Kind::Placement)),
     ("domain", Slot::words(&["canvas", "region"])),
     ("bleed", Slot::of(Kind::Length)),
@@ -49,6 +49,9 @@ const PROPERTIES: [(&str, Slot); 14] = [
     ("angle", Slot::of(Kind::Angles)),
     ("fill", Slot::of(Kind::Fill)),
     ("k", Slot::of(Kind::Field)),
+    ("darkness", Slot::of(Kind::Field)),
+    ("range", Slot::words(&["clip", "fit"])),
+    ("solid", Slot::of(Kind::Number)),
     ("blend", Slot::words(&["step", "partial", "dither", "contour"])),
     ("stack", Slot::words(&["cover", "through"])),
     ("over", Slot::words(&["print", "knockout"])),
@@ -61,7 +64,17 @@ const PROPERTIES: [(&str, Slot); 14] = [
 const REQUIRED: [&str; 2] = ["place", "fill"];
 
 /// Properties that a later version draws.
-const LATER: [&str; 3] = ["darkness", "range", "solid"];
+/// Pairs of properties of which a tone has one at most, with what the first is about.
+const RIVALS: [(&str, &str, &str); 4] = [
+    (
+        "darkness",
+        "k",
+        "`k` is a number of layers, `darkness` a share of the paper from which layers follow: give one of them",
+    ),
+    ("darkness", "blend", "`blend` is about fractions of `k`; with `darkness` the spacing of lines takes care of them"),
+    ("range", "k", "`range` is about `darkness`, which has bounds that depend on the fill"),
+    ("solid", "k", "`solid` is about `darkness`; layers of `k` are inked all over by `fill: solid`"),
+];
 
 /// The direction of a ground's lines, which no tile turns: the diagonal that the hand takes.
 const GROUND_DEGREES: f64 = 45.0;
@@ -230,11 +243,6 @@ impl ToneValue {
         let name = &property.name;
         let Some((known, slot)) = PROPERTIES.iter().find(|(known, _)| *known == name.name) else {
             self.broken = true;
-            if LATER.contains(&name.name.as_str()) {
-                // Its value belongs to the later version as well.
-                cx.report(not_yet(&name.name, name.span));
-                return;
-            }
             eval::eval(cx, scope, &property.value, Slot::of(Kind::Field));
             let names = PROPERTIES.iter().map(|(name, _)| *name);
             let hint = did_you_mean(&name.name, names.clone()).unwrap_or_else(|| {
@@ -258,14 +266,20 @@ impl ToneValue {
     fn held_to_range(&self, cx: &mut Cx<'_, '_>, name: &str, value: Value, span: Span) -> Value {
         let message = match (name, &value) {
             ("bleed", Value::Length(mm)) if *mm < 0.0 => "`bleed` must not be negative".to_owned(),
-            ("k", Value::Field(TypedField { unit, .. })) if *unit != FieldUnit::Number => {
+            ("solid", Value::Number(share)) if !(*share > 0.0 && *share <= 1.0) => {
+                "`solid` must lie between 0 and 1, and above 0".to_owned()
+            }
+            ("darkness", Value::Field(TypedField { field, unit: FieldUnit::Number })) if matches!(field.node(), Node::Constant(share) if !(0.0..=1.0).contains(share)) => {
+                "`darkness` must lie between 0 (paper) and 1 (ink)".to_owned()
+            }
+            ("k" | "darkness", Value::Field(TypedField { unit, .. })) if *unit != FieldUnit::Number => {
                 let found = match unit {
                     FieldUnit::Number => "numbers",
                     FieldUnit::Length => "lengths",
                     FieldUnit::Angle => "angles",
                     FieldUnit::Bool => "conditions",
                 };
-                let message = format!("`k` takes numbers, not {found}");
+                let message = format!("`{name}` takes numbers, not {found}");
                 cx.report(Diagnostic::error(Code::Type, span, message));
                 return Value::Unknown(Some(Kind::Field));
             }
@@ -308,10 +322,23 @@ impl ToneValue {
 
     /// Properties that do not go together.
     fn check_pairs(&self, cx: &mut Cx<'_, '_>) -> bool {
-        let Some(place) = self.get("place") else { return true };
-        // Both are looked at, so that each one's mistake is told.
+        let mut whole = true;
+        for (name, other, reason) in RIVALS {
+            if let (Some(given), Some(rival)) = (self.get(name), self.get(other)) {
+                // The one that stands later came to the other: in a derived tone that is not always the first.
+                let message = format!("`{name}` and `{other}` do not go together");
+                cx.report(
+                    Diagnostic::error(Code::Conflict, given.span, message)
+                        .note(rival.span, format!("`{other}` is given here"))
+                        .hint(reason),
+                );
+                whole = false;
+            }
+        }
+        let Some(place) = self.get("place") else { return whole };
+        // All are looked at, so that each one's mistake is told.
         let has_cells = self.check_cells(cx, place);
-        self.check_rows(cx, place) && has_cells
+        self.check_rows(cx, place) && has_cells && whole
     }
 
     /// Cells and the edges they share need a placement that has some.
@@ -371,7 +398,7 @@ impl ToneValue {
                 whole = false;
             }
         }
-        if !whole {
+        if !whole || !self.check_darkness(cx) {
             return None;
         }
         let place = self.get("place")?;
@@ -384,10 +411,7 @@ impl ToneValue {
             Some(Value::Angles(rule)) => (**rule).clone(),
             _ => AngleRule::Bfs { candidates: 360 },
         };
-        let (k, k_span) = match self.get("k") {
-            Some(Given { value: Value::Field(TypedField { field, .. }), span, .. }) => (field.clone(), *span),
-            _ => (Field::constant(1.0), span),
-        };
+        let (asked, asked_span) = self.asked().unwrap_or_else(|| (Asked::K(Field::constant(1.0)), span));
         let (hand, hand_span) = match self.get("hand") {
             Some(Given { value: Value::Hand(hand), span, .. }) => (*hand, *span),
             _ => (Hand::RULED, span),
@@ -425,8 +449,8 @@ impl ToneValue {
             shape,
             angle,
             fill: self.fill_list()?,
-            k,
-            k_span,
+            asked,
+            asked_span,
             blend: match self.word("blend") {
                 Some("partial") => Blend::Partial,
                 Some("dither") => Blend::Dither,
@@ -446,6 +470,60 @@ impl ToneValue {
             hand,
             hand_span,
         })
+    }
+
+    /// What is asked for, and where.
+    fn asked(&self) -> Option<(Asked, Span)> {
+        if let Some(Given { value: Value::Field(TypedField { field, .. }), span, .. }) = self.get("darkness") {
+            let range = match self.word("range") {
+                Some("fit") => Range::Fit,
+                _ => Range::Clip,
+            };
+            let solid = self.get("solid").and_then(|given| given.value.number());
+            return Some((Asked::Darkness(Darkness { field: field.clone(), range, solid }), *span));
+        }
+        match self.get("k")? {
+            Given { value: Value::Field(TypedField { field, .. }), span, .. } => Some((Asked::K(field.clone()), *span)),
+            Given { .. } => None,
+        }
+    }
+
+    /// What belongs to a darkness stands with one, and its ink spreads by less than the width of its strokes.
+    fn check_darkness(&self, cx: &mut Cx<'_, '_>) -> bool {
+        let mut whole = true;
+        if self.get("darkness").is_none() {
+            for name in ["range", "solid"] {
+                if let Some(given) = self.get(name) {
+                    let message = format!("`{name}` needs a `darkness`, which the tone `{}` has not", self.name);
+                    cx.report_value(Diagnostic::error(Code::Missing, given.span, message));
+                    whole = false;
+                }
+            }
+            return whole;
+        }
+        let (Some((gain, span)), Some(fills)) = (cx.gain, self.fill_list()) else { return whole };
+        let widths = fills.iter().filter_map(|fill| match &fill.kind {
+            FillKind::Dots { radius, .. } => Some(*radius * 2.0),
+            FillKind::Lines(_)
+            | FillKind::Dashes { .. }
+            | FillKind::Crosses { .. }
+            | FillKind::Arcs(_)
+            | FillKind::Waves { .. }
+            | FillKind::Scribble { .. }
+            | FillKind::Nawaami { .. }
+            | FillKind::Motif { .. }
+            | FillKind::Solid => fill.kind.hatch().map(|hatch| hatch.pen),
+        });
+        let Some(pen) = widths.reduce(Length::min).filter(|&pen| gain > pen) else { return whole };
+        let message =
+            format!("ink that spreads by {}mm is wider than this tone's marks of {}mm", gain.to_mm(), pen.to_mm());
+        let given = self.get("fill").map_or(span, |given| given.span);
+        cx.report_value(
+            Diagnostic::error(Code::Range, span, message)
+                .note(given, "drawn here")
+                .hint("`gain` is how far ink spreads beyond each edge of a mark: about 0.02mm on smooth paper"),
+        );
+        false
     }
 
     fn fill_list(&self) -> Option<Vec<Fill>> {

@@ -4,7 +4,7 @@ use crate::field::Field;
 use crate::geom::{Length, Point, Rect};
 use crate::region::Region;
 use crate::scene::{
-    AngleRule, Blend, Canvas, Cap, Colour, Depth, Domain, Edge, Fill, FillKind, Hand, Hatch, Link, Over, Paint,
+    AngleRule, Asked, Blend, Canvas, Cap, Colour, Depth, Domain, Edge, Fill, FillKind, Hand, Hatch, Link, Over, Paint,
     Placement, Repeat, Shape, Stack, Tone,
 };
 use crate::span::{Sources, Span, Syntax};
@@ -22,6 +22,7 @@ pub(crate) fn canvas(width: f64, height: f64) -> Canvas {
         depth: Depth::Eight,
         unit: Length::mm(1.0),
         repeat: Repeat::Off,
+        gain: Length::ZERO,
     }
 }
 
@@ -49,8 +50,8 @@ pub(crate) fn paint(canvas: &Canvas, place: Placement, angle: AngleRule) -> Pain
             link: Link::Delaunay,
             angle,
             fill: vec![Fill { kind: FillKind::Lines(hatch), ink: None }],
-            k: Field::constant(1.0),
-            k_span: span,
+            asked: Asked::K(Field::constant(1.0)),
+            asked_span: span,
             blend: Blend::Step,
             stack: Stack::Cover,
             over: Over::Print,

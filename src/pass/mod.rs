@@ -9,4 +9,5 @@ pub mod draw;
 pub(crate) mod fixture;
 pub mod link;
 pub mod place;
+mod thin;
 pub mod turn;

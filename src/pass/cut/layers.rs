@@ -12,14 +12,14 @@ const ROUNDING: f64 = 1e-9;
 
 /// The nearest whole number, halves up. `k` lies in 0..=4, as in all functions here.
 pub(super) fn step(k: f64) -> Layers {
-    Layers { full: whole(k), part: 0.0 }
+    Layers::new(whole(k), 0.0)
 }
 
 /// Whole layers, and of the next one the share that is left.
 pub(super) fn partial(k: f64) -> Layers {
     let full = (k + ROUNDING).floor();
     let part = k - full;
-    Layers { full: full as u8, part: if part > ROUNDING { part } else { 0.0 } }
+    Layers::new(full as u8, if part > ROUNDING { part } else { 0.0 })
 }
 
 /// Whole numbers whose errors are passed on in equal shares to neighbours that come later; what the last of their
@@ -37,7 +37,7 @@ pub(super) fn dither(k: &[f64], graph: &Graph) -> Vec<Layers> {
             for &j in later {
                 wanted[j as usize] += error;
             }
-            Layers { full, part: 0.0 }
+            Layers::new(full, 0.0)
         })
         .collect()
 }
@@ -74,9 +74,9 @@ mod tests {
 
     #[test]
     fn partial_keeps_the_fraction() {
-        assert_eq!(partial(2.25), Layers { full: 2, part: 0.25 });
-        assert_eq!(partial(2.0 - 1e-12), Layers { full: 2, part: 0.0 });
-        assert_eq!(partial(4.0), Layers { full: 4, part: 0.0 });
+        assert_eq!(partial(2.25), Layers::new(2, 0.25));
+        assert_eq!(partial(2.0 - 1e-12), Layers::new(2, 0.0));
+        assert_eq!(partial(4.0), Layers::new(4, 0.0));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! Every tile gets its outline, its number of layers and its standing towards the painted region. Tiles are worked out
 //! in parallel and do not depend on each other but for dithering, which passes its errors on in the order of sites.
 
+mod darkness;
 mod layers;
 mod stamp;
 mod standing;
@@ -14,8 +15,9 @@ use rayon::prelude::*;
 use crate::diag::{Code, Diagnostic};
 use crate::geom::{Figure, Length, Period, Pieces, Point, Rect, Vec2};
 use crate::region::{FillRule, Region};
-use crate::scene::{Blend, Canvas, Edge, Paint, Shape};
+use crate::scene::{Asked, Blend, Canvas, Edge, Paint, Shape};
 use crate::stage::{Angles, Graph, Layers, Sites, Standing, Tiles, Tiling};
+use darkness::Bed;
 use stamp::Stamp;
 use standing::Ground;
 
@@ -35,10 +37,21 @@ struct Chunk {
     lengths: Vec<usize>,
     standing: Vec<Standing>,
     inside: Vec<bool>,
-    /// The field's value at the site, as it is.
-    k: Vec<f64>,
+    /// What is asked for, as it is: the field's value at the site, or where it is a darkness, its mean over the tile.
+    asked: Vec<f64>,
     /// The layers that occur somewhere in the tile; only where layers end along the field.
     most: Vec<u8>,
+}
+
+impl Chunk {
+    /// The outline of every tile.
+    fn rings(&self) -> impl Iterator<Item = &[Point]> {
+        let mut start = 0;
+        self.lengths.iter().map(move |&length| {
+            start += length;
+            &self.corners[start - length..start]
+        })
+    }
 }
 
 /// Cuts the tiles of a paint. Sites, links and angles belong to the same paint. One warning is added where k
@@ -62,31 +75,52 @@ pub fn cut(
             cut_chunk(paint, sites, &ground, &shaper, range)
         })
         .collect();
-    let field: Vec<f64> = chunks.iter().flat_map(|chunk| &chunk.k).copied().collect();
+    let field: Vec<f64> = chunks.iter().flat_map(|chunk| &chunk.asked).copied().collect();
     let standing: Vec<Standing> = chunks.iter().flat_map(|chunk| &chunk.standing).copied().collect();
-    let inside = chunks.iter().flat_map(|chunk| &chunk.inside).copied().collect();
-    let k: Vec<f64> = field.iter().map(|&k| clamp(k)).collect();
-    let layers: Vec<Layers> = match paint.tone.blend {
-        Blend::Step => k.iter().map(|&k| layers::step(k)).collect(),
-        Blend::Partial => k.iter().map(|&k| layers::partial(k)).collect(),
-        Blend::Dither => layers::dither(&k, graph),
-        Blend::Contour => chunks.iter().flat_map(|chunk| &chunk.most).map(|&full| Layers { full, part: 0.0 }).collect(),
+    let inside: Vec<bool> = chunks.iter().flat_map(|chunk| &chunk.inside).copied().collect();
+    let greatest = match paint.tone.asked {
+        Asked::K(_) => layers::MOST,
+        Asked::Darkness(_) => 1.0,
     };
-    warnings.extend(clamped(paint, &field, &standing));
+    let asked: Vec<f64> = field.iter().map(|&value| clamp(value, greatest)).collect();
+    warnings.extend(clamped(paint, &field, &standing, greatest));
+    let rings = chunks.iter().flat_map(Chunk::rings);
+    let blank = vec![Layers::new(0, 0.0); asked.len()];
+    let tiles = Tiles::new(rings, asked, blank, standing, inside).in_pieces(shaper.pieces());
+    let asked = &tiles.k;
+    let (k, layers) = match &paint.tone.asked {
+        Asked::K(_) => {
+            let layers: Vec<Layers> = match paint.tone.blend {
+                Blend::Step => asked.iter().map(|&k| layers::step(k)).collect(),
+                Blend::Partial => asked.iter().map(|&k| layers::partial(k)).collect(),
+                Blend::Dither => layers::dither(asked, graph),
+                Blend::Contour => {
+                    chunks.iter().flat_map(|chunk| &chunk.most).map(|&full| Layers::new(full, 0.0)).collect()
+                }
+            };
+            (asked.clone(), layers)
+        }
+        Asked::Darkness(darkness) => {
+            let bed = Bed { paint, canvas, sites, graph, angles, tiles: &tiles };
+            let (layers, warning) = darkness::layers(&bed, darkness);
+            warnings.extend(warning);
+            (layers.iter().map(|layers| f64::from(layers.full) + layers.part).collect(), layers)
+        }
+    };
     warnings.extend(unsteady::warnings(paint, sites));
     // A region off the canvas was warned of where it was found.
-    if !visible.is_empty() && standing.iter().all(|&standing| standing == Standing::Absent) {
+    if !visible.is_empty() && tiles.standing.iter().all(|&standing| standing == Standing::Absent) {
         let message = format!("`{}` has no tile on its region", paint.name);
         warnings.push(Diagnostic::warning(Code::NoTiles, paint.span, message));
     }
-    let rings = chunks.iter().flat_map(|chunk| {
-        let mut start = 0;
-        chunk.lengths.iter().map(move |&length| {
-            start += length;
-            &chunk.corners[start - length..start]
-        })
-    });
-    Tiles::new(rings, k, layers, standing, inside).in_pieces(shaper.pieces())
+    tiles.with_layers(k, layers)
+}
+
+/// The share of the paper that the tiles of a paint cover with ink, reckoned from their layers: the mean over the tiles
+/// whose sites lie in its region; 0 where there are none. Sites, links, angles and tiles belong to the paint.
+#[must_use]
+pub fn reckon(paint: &Paint, canvas: &Canvas, sites: &Sites, graph: &Graph, angles: &Angles, tiles: &Tiles) -> f64 {
+    darkness::reckon(&Bed { paint, canvas, sites, graph, angles, tiles })
 }
 
 /// The part of a paint's region that lies on the canvas: what is off the canvas is neither drawn nor measured. Where the
@@ -142,9 +176,12 @@ fn cut_chunk(
             Edge::Centre if inside && !ring.is_empty() => Standing::Whole,
             Edge::Centre => Standing::Absent,
         });
-        chunk.k.push(paint.tone.k.at(site));
+        chunk.asked.push(match &paint.tone.asked {
+            Asked::K(field) => field.at(site),
+            Asked::Darkness(darkness) => darkness::mean(&darkness.field, site, &ring),
+        });
         if paint.tone.blend == Blend::Contour {
-            chunk.most.push(layers::most(&paint.tone.k, site, &ring));
+            chunk.most.push(layers::most(paint.tone.asked.field(), site, &ring));
         }
         chunk.corners.extend_from_slice(&ring);
         chunk.lengths.push(ring.len());
@@ -152,14 +189,14 @@ fn cut_chunk(
     chunk
 }
 
-/// A value of k brought into 0..=4; what is no number counts as nothing.
-fn clamp(k: f64) -> f64 {
-    if k.is_nan() { 0.0 } else { k.clamp(0.0, layers::MOST) }
+/// A value brought into 0..=greatest; what is no number counts as nothing.
+fn clamp(value: f64, greatest: f64) -> f64 {
+    if value.is_nan() { 0.0 } else { value.clamp(0.0, greatest) }
 }
 
-/// The warning that some values of k were clamped, if any were on tiles that are drawn.
-fn clamped(paint: &Paint, field: &[f64], standing: &[Standing]) -> Option<Diagnostic> {
-    let excess = |k: f64| if k.is_nan() { f64::INFINITY } else { (-k).max(k - layers::MOST) };
+/// The warning that some values were clamped, if any were on tiles that are drawn.
+fn clamped(paint: &Paint, field: &[f64], standing: &[Standing], greatest: f64) -> Option<Diagnostic> {
+    let excess = |k: f64| if k.is_nan() { f64::INFINITY } else { (-k).max(k - greatest) };
     let drawn = || field.iter().zip(standing).filter(|(_, standing)| **standing != Standing::Absent).map(|(&k, _)| k);
     let count = drawn().filter(|&k| excess(k) > ROUNDING).count();
     // The first of those that go farthest.
@@ -170,15 +207,19 @@ fn clamped(paint: &Paint, field: &[f64], standing: &[Standing]) -> Option<Diagno
         }
     }
     let extreme = extreme?;
+    let name = match paint.tone.asked {
+        Asked::K(_) => "k",
+        Asked::Darkness(_) => "darkness",
+    };
     let tiles = if count == 1 { "1 tile".to_owned() } else { format!("{count} tiles") };
     Some(
         Diagnostic::warning(
             Code::Clamped,
-            paint.tone.k_span,
-            format!("`k` leaves the range from 0 to 4 on {tiles} of `{}`", paint.name),
+            paint.tone.asked_span,
+            format!("`{name}` leaves the range from 0 to {greatest} on {tiles} of `{}`", paint.name),
         )
         .label(format!("reaches {}", (extreme * 1e3).round() / 1e3))
-        .hint("the values were clamped; `clamp(…, 0, 4)` says so in the scene")
+        .hint(format!("the values were clamped; `clamp(…, 0, {greatest})` says so in the scene"))
         .note(paint.span, "painted here"),
     )
 }

@@ -90,7 +90,7 @@ fn cross(
     let is_on_frame = |frame: &Frame, half: f64| {
         clearance < pen && [-half, half].iter().all(|&u| layer.area.clearance(frame.page(u, 0.0)).abs() < pen)
     };
-    if job.paint.tone.blend == Blend::Contour && job.paint.tone.k.at(page) < f64::from(layer.number) - 0.5 {
+    if job.paint.tone.blend == Blend::Contour && job.paint.tone.asked.field().at(page) < f64::from(layer.number) - 0.5 {
         return Ok(());
     }
     let half = crossing.size.to_mm() / 2.0;

@@ -14,13 +14,14 @@ use crate::scene::{Blend, Cap, Hatch};
 use super::budget::{BANK, CURVE, DRAWN, Exceeded, SAMPLE};
 use super::cutout::{Cutout, unite};
 use super::edge::Bank;
-use super::hand::{Pull, Wander};
+use super::hand::Pull;
 use super::job::{Job, Layer, Scratch as JobScratch};
 use super::lattice::{Lattice, is_drawn};
 use super::lines::spread;
 use super::palette::Batch;
 use super::run::Run;
 use super::stroke::CRUMB;
+use super::wander::Wander;
 
 /// Where a curve comes near the region's outline it is looked at in steps of this many millimetres: ink reaches over the
 /// outline by half of it at most, in notches that are narrower.
@@ -240,7 +241,7 @@ fn overshoot(chain: &[Point], over: (f64, f64), ranges: &mut Vec<(f64, f64)>) {
 
 /// Keeps the parts of the stroke where the field has this layer, if layers end along the field.
 fn contour(job: &Job<'_>, layer: &Layer<'_>, pitch: Length, scratch: &mut JobScratch) -> Result<(), Exceeded> {
-    let field = &job.paint.tone.k;
+    let field = job.paint.tone.asked.field();
     if job.paint.tone.blend != Blend::Contour || matches!(field.node(), Node::Constant(_)) {
         return Ok(());
     }

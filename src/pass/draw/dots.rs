@@ -137,7 +137,8 @@ fn is_free(
     if layer.area.clearance(centre) < least {
         return Ok(false);
     }
-    if job.paint.tone.blend == Blend::Contour && job.paint.tone.k.at(centre) < f64::from(layer.number) - 0.5 {
+    if job.paint.tone.blend == Blend::Contour && job.paint.tone.asked.field().at(centre) < f64::from(layer.number) - 0.5
+    {
         return Ok(false);
     }
     let is_cover = |&cover: &u32| {

@@ -54,15 +54,14 @@ fn cost(job: &Job<'_>, tile: usize) -> Cost {
     let mut cost = Cost::default();
     let (area, radius) = (ring_area(job.tiles.outline(tile)).abs(), job.nearby.radius(tile));
     let layers = job.tiles.layers[tile];
-    let fills = &job.paint.tone.fill;
     let count = (layers.full + u8::from(layers.part > 0.0)).min(4);
     for number in 1..=count {
-        let share = if number <= layers.full { 1.0 } else { layers.part };
+        let (kind, share) = job.layer_of(layers, number);
         // A tile is nowhere narrower than its area over its diameter. Casts of what is too great give the greatest number.
         let lines = |pitch: f64| area / (2.0 * radius) / pitch;
         let places =
             |hatch: &Hatch, spacing: Length| u128::from((share * area / hatch.pitch.to_mm() / spacing.to_mm()) as u64);
-        match &fills[usize::from(number - 1).min(fills.len() - 1)].kind {
+        match &*kind {
             FillKind::Lines(hatch) | FillKind::Dashes { hatch, .. } => {
                 cost.lines += u128::from(lines(hatch.pitch.to_mm()) as u64);
             }

@@ -23,7 +23,7 @@ use super::curves::{Course, clip, disc, emit, trace};
 use super::dashes::Dashes;
 use super::dots::{Dot, Dotting, end_row};
 use super::edge::{Bank, Contact};
-use super::hand::{Bundle, Line, Pull, Wander};
+use super::hand::{Bundle, Pull};
 use super::job::{Job, Piece, Scratch};
 use super::lattice::Lattice;
 use super::motif::Motif;
@@ -32,6 +32,7 @@ use super::scribble::Scribble;
 use super::solid;
 use super::stroke::Stroke;
 use super::torus::overhang;
+use super::wander::{Line, Wander};
 use super::waves::Waves;
 use super::weave::{Along, Bond, Weave};
 

@@ -1,11 +1,14 @@
 //! One paint as the fills see it: its tiles, what hides what, where strokes end, and what may be spent.
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 
 use crate::geom::clip::{Frame, Profile, Ranges};
 use crate::geom::{Angle, Figure, Point, Vec2};
-use crate::scene::{FillKind, Paint, Stack};
-use crate::stage::{Angles, Sites, Standing, Tiles};
+use crate::pass::thin::{Thinned, thinned};
+use crate::scene::{Asked, FillKind, Paint, Stack};
+use crate::stage::{Angles, Layers, Sites, Standing, Tiles};
 
 use super::budget::{Budget, Exceeded, PROFILE};
 use super::edge::{self, Bank};
@@ -127,6 +130,20 @@ impl Job<'_> {
         self.paint.tone.stack == Stack::Cover && !self.paint.tone.shape.is_cell()
     }
 
+    /// What is drawn in layer `number` of a tile, 1 to 4, and which share of its lines.
+    pub(super) fn layer_of(&self, layers: Layers, number: u8) -> (Cow<'_, FillKind>, f64) {
+        let fills = &self.paint.tone.fill;
+        let kind = &fills[usize::from(number.saturating_sub(1)).min(fills.len() - 1)].kind;
+        match self.paint.tone.asked {
+            _ if number <= layers.full => (Cow::Borrowed(kind), 1.0),
+            Asked::K(_) => (Cow::Borrowed(kind), layers.part),
+            Asked::Darkness(_) => {
+                let Thinned { kind, share } = thinned(kind, number, layers.part);
+                (Cow::Owned(kind), share)
+            }
+        }
+    }
+
     /// Draws a tile's own marks.
     pub(super) fn draw_tile(&self, scratch: &mut Scratch, tile: usize, out: &mut [Batch]) -> Result<(), Exceeded> {
         if !self.tiles.is_drawn(tile) {
@@ -170,13 +187,14 @@ impl Job<'_> {
             let at = usize::from(number - 1).min(fills.len() - 1);
             let slots = self.palette.slots(at);
             let slot = slots.start;
-            let turn = if stands_on_one_lattice(&fills[at].kind) { 1 } else { number };
+            let (kind, share) = self.layer_of(layers, number);
+            let turn = if stands_on_one_lattice(&kind) { 1 } else { number };
             let bundle =
                 (!hand.is_ruled()).then(|| Bundle::new(self.paint, self.sites.original(piece.tile), i64::from(number)));
             let unturned = Frame::new(self.sites.points[piece.tile], direction(self.angles.0[piece.tile], turn));
             let layer = Layer {
                 number,
-                share: if number <= layers.full { 1.0 } else { layers.part },
+                share,
                 frame: bundle.map_or(unturned, |bundle| bundle.turned(&unturned)),
                 unturned,
                 outline: figure.outline(),
@@ -186,9 +204,13 @@ impl Job<'_> {
                 partner: piece.partner,
                 bundle,
             };
+            if layers.is_solid {
+                solid::draw(self, &layer, &scratch.covers, &mut out[self.palette.solid_slot()]);
+                return Ok(());
+            }
             let batches = &mut out[slots];
             self.budget.look(&mut scratch.looks, PROFILE * (1 + scratch.covers.len() as u64))?;
-            match &fills[at].kind {
+            match &*kind {
                 FillKind::Lines(hatch) => lines::draw(self, &layer, hatch, None, scratch, batches)?,
                 FillKind::Dashes { hatch, dash, gap } => {
                     let dashes = dashes::Dashes::new(*dash, *gap);
@@ -247,7 +269,7 @@ fn stands_on_one_lattice(kind: &FillKind) -> bool {
 }
 
 /// The direction of a layer's strokes: layers are turned by 0, 90, 45 and 135 degrees against the tile.
-fn direction(angle: Angle, layer: u8) -> Vec2 {
+pub(in crate::pass) fn direction(angle: Angle, layer: u8) -> Vec2 {
     let along = angle.unit();
     let across = along.turned();
     let half = std::f64::consts::FRAC_1_SQRT_2;

@@ -11,7 +11,7 @@ const FRAME: f64 = 1e-6;
 
 /// Places at equal steps: `origin + i * step` for whole i.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Lattice {
+pub(in crate::pass) struct Lattice {
     origin: f64,
     step: f64,
     /// The first and last i of the tile that the lattice was made for.
@@ -22,7 +22,7 @@ impl Lattice {
     /// Lines over a stamp of this range: the number of equal steps that is nearest to the pitch, the outermost lines
     /// `inset` steps from the frame. Where the outermost lines lie on the frame itself, layers after the first leave
     /// them out.
-    pub(super) fn stamp((low, high): (f64, f64), pitch: f64, inset: f64, layer: u8) -> Self {
+    pub(in crate::pass) fn stamp((low, high): (f64, f64), pitch: f64, inset: f64, layer: u8) -> Self {
         let width = high - low;
         let steps = (width / pitch - 2.0 * inset + 0.5 + TIE).floor().max(0.0);
         if steps + 2.0 * inset <= 0.0 {
@@ -38,29 +38,29 @@ impl Lattice {
     }
 
     /// Lines over a cell of this range: at the exact pitch, one of them through `middle`, none on the frame.
-    pub(super) fn cell((low, high): (f64, f64), middle: f64, pitch: f64) -> Self {
+    pub(in crate::pass) fn cell((low, high): (f64, f64), middle: f64, pitch: f64) -> Self {
         Self { origin: middle, step: pitch, range: (0.0, -1.0) }.over((low + FRAME, high - FRAME))
     }
 
     /// Moved by a share of a step.
-    pub(super) fn moved(self, share: f64) -> Self {
+    pub(in crate::pass) fn moved(self, share: f64) -> Self {
         Self { origin: self.origin + share * self.step, ..self }
     }
 
     /// Continued over another range.
-    pub(super) fn over(self, (low, high): (f64, f64)) -> Self {
+    pub(in crate::pass) fn over(self, (low, high): (f64, f64)) -> Self {
         let first = ((low - self.origin - TOLERANCE) / self.step).ceil();
         let last = ((high - self.origin + TOLERANCE) / self.step).floor();
         Self { range: (first, last), ..self }
     }
 
     /// From place to place.
-    pub(super) fn step(&self) -> f64 {
+    pub(in crate::pass) fn step(&self) -> f64 {
         self.step
     }
 
     /// How many places there are. It may be too great for a whole number.
-    pub(super) fn count(&self) -> f64 {
+    pub(in crate::pass) fn count(&self) -> f64 {
         (self.range.1 - self.range.0 + 1.0).max(0.0)
     }
 
@@ -71,7 +71,7 @@ impl Lattice {
     }
 
     /// The places with their numbers, in order.
-    pub(super) fn places(self) -> impl DoubleEndedIterator<Item = (i64, f64)> {
+    pub(in crate::pass) fn places(self) -> impl DoubleEndedIterator<Item = (i64, f64)> {
         let range =
             if self.count() > 0.0 { self.range.0 as i64..(self.range.1 as i64).saturating_add(1) } else { 0..0 };
         range.map(move |i| (i, self.origin + i as f64 * self.step))
@@ -79,7 +79,7 @@ impl Lattice {
 }
 
 /// Whether line i is one of an even share of all lines.
-pub(super) fn is_drawn(i: i64, share: f64) -> bool {
+pub(in crate::pass) fn is_drawn(i: i64, share: f64) -> bool {
     share >= 1.0 || ((i + 1) as f64 * share).floor() > (i as f64 * share).floor()
 }
 

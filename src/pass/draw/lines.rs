@@ -10,12 +10,12 @@ use crate::scene::{Blend, Hatch};
 
 use super::budget::{BANK, Exceeded, LINE, PROFILE, SAMPLE};
 use super::dashes::Dashes;
-use super::hand::Line;
 use super::job::{Job, Layer, Scratch};
 use super::lattice::{Lattice, is_drawn};
 use super::palette::Batch;
 use super::silhouette::Silhouette;
 use super::stroke::Stroke;
+use super::wander::Line;
 
 /// Halvings in the search for the place where a layer ends along the field: from a tenth of a millimetre to a millionth.
 const HALVINGS: usize = 24;
@@ -195,7 +195,7 @@ fn contour(
     pitch: Length,
     scratch: &mut Scratch,
 ) -> Result<(), Exceeded> {
-    let field = &job.paint.tone.k;
+    let field = job.paint.tone.asked.field();
     if job.paint.tone.blend != Blend::Contour || matches!(field.node(), Node::Constant(_)) {
         return Ok(());
     }

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use crate::drawing::{Curves, Dots, Layer, Strokes, Tapers};
 use crate::geom::{Length, Point};
-use crate::scene::{Cap, Colour, Fill, FillKind, Ground, Hand, Paint};
+use crate::scene::{Asked, Cap, Colour, Darkness, Fill, FillKind, Ground, Hand, Paint};
 
 use super::hand::{weighed, weights};
 use super::solid;
@@ -54,6 +54,8 @@ pub(super) struct Palette {
     fills: Vec<Range<usize>>,
     /// The slots of the ground's own fill.
     ground: Range<usize>,
+    /// The slot of tiles that are inked all over because they are dark.
+    solid: usize,
 }
 
 impl Palette {
@@ -76,8 +78,16 @@ impl Palette {
             Some(Ground::Fill { fill, .. }) => slot(fill),
             Some(Ground::Nearest) | None => 0..0,
         };
-        let fills = paint.tone.fill.iter().map(slot).collect();
-        Self { slots, fills, ground }
+        let fills = paint.tone.fill.iter().map(&mut slot).collect();
+        // They take the ink of the first layer.
+        let solid = match &paint.tone.asked {
+            Asked::Darkness(Darkness { solid: Some(_), .. }) => {
+                let ink = paint.tone.fill.first().and_then(|fill| fill.ink);
+                slot(&Fill { kind: FillKind::Solid, ink }).start
+            }
+            Asked::Darkness(_) | Asked::K(_) => 0,
+        };
+        Self { slots, fills, ground, solid }
     }
 
     /// One empty batch for each slot.
@@ -93,6 +103,11 @@ impl Palette {
     /// The slots of the ground's own fill, one for each weight.
     pub(super) fn ground_slots(&self) -> Range<usize> {
         self.ground.clone()
+    }
+
+    /// The slot of tiles that are inked all over because they are dark.
+    pub(super) fn solid_slot(&self) -> usize {
+        self.solid
     }
 
     /// Puts batches together, in order; layers without a mark are left out.

@@ -4,7 +4,7 @@ use crate::geom::Figure;
 use crate::geom::clip::{Frame, Profile, TOLERANCE};
 
 /// A line that runs into convex outlines and out again.
-pub(super) trait Meet {
+pub(in crate::pass) trait Meet {
     /// Where it lies in an outline.
     fn meet(&self, profile: &Profile) -> Option<(f64, f64)>;
 }
@@ -18,7 +18,7 @@ impl Meet for f64 {
 
 /// The profiles of a figure's convex pieces.
 #[derive(Default)]
-pub(super) struct Silhouette {
+pub(in crate::pass) struct Silhouette {
     /// The list may be longer than there are pieces, so that memory is used again.
     profiles: Vec<Profile>,
     count: usize,
@@ -26,7 +26,7 @@ pub(super) struct Silhouette {
 
 impl Silhouette {
     /// Takes the profiles of another figure.
-    pub(super) fn set(&mut self, figure: Figure<'_>, frame: &Frame) {
+    pub(in crate::pass) fn set(&mut self, figure: Figure<'_>, frame: &Frame) {
         self.count = 0;
         for piece in figure.pieces() {
             if self.profiles.len() == self.count {
@@ -42,18 +42,23 @@ impl Silhouette {
     }
 
     /// The range across the lines; the first is above the second where there is nothing.
-    pub(super) fn across(&self) -> (f64, f64) {
+    pub(in crate::pass) fn across(&self) -> (f64, f64) {
         self.profiles().iter().map(Profile::across).fold((f64::INFINITY, f64::NEG_INFINITY), widened)
+    }
+
+    /// The range along the lines.
+    pub(in crate::pass) fn along(&self) -> (f64, f64) {
+        self.profiles().iter().map(Profile::along).fold((f64::INFINITY, f64::NEG_INFINITY), widened)
     }
 
     /// Calls `visit` with the ranges of a line that lie in the pieces. They may touch and come in no order: whoever
     /// takes them away need not care.
-    pub(super) fn spans(&self, line: &impl Meet, visit: impl FnMut((f64, f64))) {
+    pub(in crate::pass) fn spans(&self, line: &impl Meet, visit: impl FnMut((f64, f64))) {
         self.profiles().iter().filter_map(|profile| line.meet(profile)).for_each(visit);
     }
 
     /// Writes the ranges of a line that lie in the figure, ascending, those of touching pieces joined.
-    pub(super) fn ranges(&self, line: &impl Meet, out: &mut Vec<(f64, f64)>) {
+    pub(in crate::pass) fn ranges(&self, line: &impl Meet, out: &mut Vec<(f64, f64)>) {
         out.clear();
         self.spans(line, |span| out.push(span));
         if out.len() > 1 {

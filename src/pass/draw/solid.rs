@@ -19,7 +19,7 @@ pub(super) fn draw(job: &Job<'_>, layer: &Layer<'_>, covers: &[u32], out: &mut B
     if layer.share < HALF {
         return;
     }
-    let (field, area) = (&job.paint.tone.k, layer.area.outline());
+    let (field, area) = (job.paint.tone.asked.field(), layer.area.outline());
     let has_contour = job.paint.tone.blend == Blend::Contour && !matches!(field.node(), Node::Constant(_));
     let hidden: Vec<Vec<Point>> = covers
         .iter()

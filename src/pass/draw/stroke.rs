@@ -7,9 +7,10 @@ use crate::scene::Hatch;
 use super::budget::Exceeded;
 use super::dashes::Dashes;
 use super::edge::Nib;
-use super::hand::{Bundle, Line, Pull};
+use super::hand::{Bundle, Pull};
 use super::job::{self, Job};
 use super::palette::Batch;
+use super::wander::Line;
 
 /// Pieces of no more than this many millimetres are rounding, however short strokes may be.
 pub(super) const CRUMB: f64 = 1e-6;

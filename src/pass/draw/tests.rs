@@ -15,8 +15,8 @@ use crate::pass::fixture::{self, canvas};
 use crate::pass::{cut, link, place, turn};
 use crate::region::Region;
 use crate::scene::{
-    AngleRule, Blend, Cap, Colour, Draw, Edge, Fill, FillKind, GridSize, Ground, Hatch, LayerGroup, Outline, Over,
-    Placement, Scene, Shape,
+    AngleRule, Asked, Blend, Cap, Colour, Draw, Edge, Fill, FillKind, GridSize, Ground, Hatch, LayerGroup, Outline,
+    Over, Placement, Scene, Shape,
 };
 use crate::stage::Standing;
 
@@ -151,13 +151,13 @@ fn the_reports_square_has_twelve_lines_and_then_ten() {
     paint.tone.fill = vec![fill(FillKind::Lines(Hatch { inset: 0.0, ..hatch(0.08, 0.4 / 75.0) }))];
     let mut counts = Vec::new();
     for k in 0..=4 {
-        paint.tone.k = Field::constant(f64::from(k));
+        paint.tone.asked = Asked::K(Field::constant(f64::from(k)));
         let run = Run::new(&paint, &canvas);
         counts.push(lines(&layers(&paint, &canvas, &run)).len());
     }
     // The diagonal is 15.56 pitches: 16 steps, without the corners 15 lines.
     assert_eq!(counts, [0, 12, 22, 37, 52]);
-    paint.tone.k = Field::constant(1.0);
+    paint.tone.asked = Asked::K(Field::constant(1.0));
     let run = Run::new(&paint, &canvas);
     let drawn = lines(&layers(&paint, &canvas, &run));
     for (i, [a, b]) in drawn.iter().enumerate() {
@@ -173,7 +173,7 @@ fn a_share_of_the_lines_is_drawn() {
     let canvas = canvas(6.0, 6.0);
     let mut paint = single(&canvas, Point::new(3.0, 3.0), 3.1);
     paint.tone.blend = Blend::Partial;
-    paint.tone.k = Field::constant(1.3);
+    paint.tone.asked = Asked::K(Field::constant(1.3));
     let run = Run::new(&paint, &canvas);
     // Ten lines of the first layer and three of the second.
     assert_eq!(lines(&layers(&paint, &canvas, &run)).len(), 13);
@@ -184,7 +184,7 @@ fn layers_end_along_the_field() {
     let canvas = canvas(8.0, 8.0);
     let mut paint = single(&canvas, Point::new(4.0, 4.0), 8.0);
     paint.tone.blend = Blend::Contour;
-    paint.tone.k = linear(Point::new(8.0, 0.0), 0.0, 4.0);
+    paint.tone.asked = Asked::K(linear(Point::new(8.0, 0.0), 0.0, 4.0));
     let run = Run::new(&paint, &canvas);
     assert_eq!(run.tiles.layers[0].full, 4);
     let drawn = lines(&layers(&paint, &canvas, &run));
@@ -215,7 +215,7 @@ fn dots_of_four_layers_never_coincide() {
             paint.tone.shape = shape.clone();
             paint.tone.bleed = Some(Length::ZERO);
             paint.tone.fill = vec![fill(dots(pitch, spacing, 0.05))];
-            paint.tone.k = Field::constant(4.0);
+            paint.tone.asked = Asked::K(Field::constant(4.0));
             let run = Run::new(&paint, &canvas);
             let drawn = centres(&layers(&paint, &canvas, &run));
             let expected = 4.0 * 64.0 / (pitch * spacing);
@@ -234,7 +234,7 @@ fn threads_do_not_change_the_drawing() {
     let canvas = canvas(24.0, 24.0);
     let mut paint = paint(&canvas);
     paint.region = lens(&canvas);
-    paint.tone.k = linear(Point::new(24.0, 24.0), 0.0, 4.0);
+    paint.tone.asked = Asked::K(linear(Point::new(24.0, 24.0), 0.0, 4.0));
     paint.tone.ground = Some(Ground::Nearest);
     let with_threads = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -268,7 +268,7 @@ fn limits_are_met_before_memory_is() {
     for kind in fills {
         let lines = fill(FillKind::Lines(hatch(0.3, 0.1)));
         paint.tone.fill = vec![lines, fill(kind.clone())];
-        paint.tone.k = Field::constant(2.0);
+        paint.tone.asked = Asked::K(Field::constant(2.0));
         paint.tone.ground = None;
         let run = Run::new(&paint, &canvas);
         let limits = Limits { strokes: 100_000, ..Limits::default() };
@@ -313,7 +313,7 @@ fn a_paint_that_draws_nothing_is_warned_of() {
     paint.tone.fill = vec![fill(FillKind::Lines(Hatch { shortest: Length::mm(2.0), ..hatch(0.3, 0.1) }))];
     assert_eq!(warning(&paint).unwrap().code, Code::NoTiles);
     // Where k is nothing, nothing is meant to be drawn.
-    paint.tone.k = Field::constant(0.0);
+    paint.tone.asked = Asked::K(Field::constant(0.0));
     assert!(warning(&paint).is_none());
 }
 
@@ -321,7 +321,7 @@ fn a_paint_that_draws_nothing_is_warned_of() {
 fn clamped_values_are_reported_once() {
     let canvas = canvas(12.0, 12.0);
     let mut paint = paint(&canvas);
-    paint.tone.k = linear(Point::new(12.0, 0.0), 0.0, 6.0);
+    paint.tone.asked = Asked::K(linear(Point::new(12.0, 0.0), 0.0, 6.0));
     let run = Run::new(&paint, &canvas);
     assert_eq!(run.warnings.iter().map(|warning| warning.code).collect::<Vec<_>>(), [Code::Clamped]);
     assert!(run.tiles.k.iter().all(|k| (0.0..=4.0).contains(k)));
@@ -371,7 +371,7 @@ fn groups_and_inks_are_inherited() {
     let region = Region::circle(Point::new(4.0, 4.0), Length::mm(2.0));
     let outline = Outline { region, pen: Length::mm(0.3), span: paint(&canvas).span };
     let mut two = paint(&canvas);
-    two.tone.k = Field::constant(2.0);
+    two.tone.asked = Asked::K(Field::constant(2.0));
     two.tone.fill.push(Fill { ink: Some(blue), ..fill(FillKind::Solid) });
     let inner = LayerGroup { name: "b".to_owned(), ink: None, draws: vec![Draw::Paint(Box::new(two.clone()))] };
     let draws = vec![Draw::Layer(inner), Draw::Outline(outline)];
@@ -426,7 +426,7 @@ fn solid_layers_end_along_the_field() {
     let canvas = canvas(8.0, 8.0);
     let mut paint = single(&canvas, Point::new(4.0, 4.0), 8.0);
     paint.tone.blend = Blend::Contour;
-    paint.tone.k = linear(Point::new(8.0, 0.0), 0.0, 1.0);
+    paint.tone.asked = Asked::K(linear(Point::new(8.0, 0.0), 0.0, 1.0));
     paint.tone.fill = vec![fill(FillKind::Solid)];
     let run = Run::new(&paint, &canvas);
     let areas: Vec<_> = layers(&paint, &canvas, &run).into_iter().flat_map(|layer| layer.areas).collect();
@@ -439,7 +439,7 @@ fn solid_layers_end_along_the_field() {
 fn knockout_removes_what_lies_under_its_tiles() {
     let canvas = canvas(14.0, 14.0);
     let mut below = paint(&canvas);
-    below.tone.k = Field::constant(2.0);
+    below.tone.asked = Asked::K(Field::constant(2.0));
     below.tone.fill = vec![fill(FillKind::Lines(hatch(0.31, 0.01))), fill(dots(0.7, 0.7, 0.1))];
     below.tone.ground = Some(Ground::Fill { fill: fill(FillKind::Solid), angle: Angle::ZERO });
     let circle = Outline { region: lens(&canvas), pen: Length::mm(0.01), span: below.span };

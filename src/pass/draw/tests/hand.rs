@@ -180,7 +180,7 @@ fn a_stroke_draws_the_same_whichever_others_are_drawn() {
     let mut paint = lone(&canvas, LOOSE);
     let all = drawn(&paint, &canvas);
     paint.tone.blend = Blend::Partial;
-    paint.tone.k = Field::constant(0.5);
+    paint.tone.asked = Asked::K(Field::constant(0.5));
     let some = drawn(&paint, &canvas);
     assert_eq!(some.len(), 5);
     let turned = |(spine, widths): &(Vec<Point>, Vec<f64>)| {

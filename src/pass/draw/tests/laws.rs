@@ -24,7 +24,7 @@ pub(super) fn hatched() -> impl Strategy<Value = (Canvas, Paint)> {
         paint.region = lens(&canvas);
         paint.tone.shape = shape;
         paint.tone.fill = vec![fill(FillKind::Lines(Hatch { cap, inset, ..hatch(0.31, 0.1) }))];
-        paint.tone.k = linear(Point::new(9.0, 9.0), k, 4.0 - k);
+        paint.tone.asked = Asked::K(linear(Point::new(9.0, 9.0), k, 4.0 - k));
         (canvas, paint)
     })
 }
@@ -77,7 +77,7 @@ proptest! {
         // Without the region and with one layer, so that the lines can be listed here.
         paint.region = Region::rect(canvas.bounds());
         paint.tone.edge = Edge::Centre;
-        paint.tone.k = Field::constant(1.0);
+        paint.tone.asked = Asked::K(Field::constant(1.0));
         let run = Run::new(&paint, &canvas);
         let drawn = length(&lines(&layers(&paint, &canvas, &run)));
         let inset = paint.tone.fill[0].kind.hatch().unwrap().inset;
@@ -130,7 +130,7 @@ proptest! {
     #[test]
     fn the_ground_is_where_no_tile_is((canvas, paint) in hatched(), is_nearest in any::<bool>()) {
         let mut paint = paint;
-        paint.tone.k = Field::constant(1.0);
+        paint.tone.asked = Asked::K(Field::constant(1.0));
         paint.tone.shape = rect_shape(Some(1.2), None);
         // Four equal steps of 0.3.
         paint.tone.fill = vec![fill(FillKind::Lines(hatch(0.31, 0.1)))];
