@@ -221,7 +221,7 @@ fn nothing_at_all_is_no_scene() {
 
 /// Every case as bytes.
 fn cases() -> Vec<(String, Vec<u8>)> {
-    let folders = ["tests/cases/build", "tests/cases/fail", "tests/cases/later", "examples"];
+    let folders = ["tests/cases/build", "tests/cases/fail", "examples"];
     let paths = folders.into_iter().flat_map(scenes);
     let extension = |path: &std::path::Path| path.extension().unwrap_or_default().to_string_lossy().into_owned();
     paths.map(|path| (format!("scene.{}", extension(&path)), fs::read(path).expect("it can be read"))).collect()

@@ -14,6 +14,7 @@ const CELLS_A_TILE: f64 = 32.0;
 const MOVES_A_TILE: f64 = 32.0;
 
 /// The limit of tiles.
+#[derive(Clone, Copy)]
 pub(super) struct Budget {
     tiles: u64,
     span: Span,
