@@ -4,7 +4,8 @@ use std::io;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use kakeami::back::{png, svg};
+use kakeami::back::plot::plot;
+use kakeami::back::{pdf, png, svg};
 use kakeami::drawing::{Drawing, Layer, Page, Strokes};
 use kakeami::geom::{Length, Point, Vec2};
 use kakeami::random::Key;
@@ -70,4 +71,24 @@ fn png_of_a_page(bencher: Bencher<'_, '_>, depth: Depth) {
 fn pixels_of_a_page(bencher: Bencher<'_, '_>) {
     let drawing = page(100_000, Depth::Eight);
     bencher.bench_local(|| kakeami::back::raster::render(&drawing));
+}
+
+#[divan::bench(args = [1, 2], sample_count = 5)]
+fn pdf_of_strokes(bencher: Bencher<'_, '_>, threads: usize) {
+    let drawing = page(1_000_000, Depth::Eight);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let write = || {
+        let written = pdf::write(&drawing, None, &mut io::sink());
+        assert!(written.is_ok());
+    };
+    bencher.counter(ItemsCount::new(1_000_000_usize)).bench_local(|| match &pool {
+        Ok(pool) => pool.install(write),
+        Err(_) => write(),
+    });
+}
+
+#[divan::bench(args = [10_000, 100_000], sample_count = 3)]
+fn plot_of_strokes(bencher: Bencher<'_, '_>, strokes: usize) {
+    let drawing = page(strokes, Depth::Eight);
+    bencher.counter(ItemsCount::new(strokes)).bench_local(|| plot(&drawing));
 }

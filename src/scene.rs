@@ -15,7 +15,7 @@ use serde::{Serialize, Serializer};
 use crate::field::Field;
 use crate::geom::bezier::cubics;
 use crate::geom::course::{half_loop, half_wave};
-use crate::geom::{Angle, Cubic, Length, Point, Rect};
+use crate::geom::{Angle, Cubic, Length, Period, Point, Rect};
 use crate::region::Region;
 use crate::span::Span;
 
@@ -56,12 +56,24 @@ pub struct Canvas {
     pub depth: Depth,
     /// The length of one canvas unit.
     pub unit: Length,
+    /// Whether it goes on beyond its borders.
+    #[serde(skip_serializing_if = "Repeat::is_off")]
+    pub repeat: Repeat,
     /// How far ink spreads beyond each edge of a mark; not negative. Darkness reckons with it, drawn widths do not change.
     #[serde(skip_serializing_if = "is_zero")]
     pub gain: Length,
 }
 
 impl Canvas {
+    /// After which width and height it repeats, if it does.
+    #[must_use]
+    pub fn period(&self) -> Option<Period> {
+        match self.repeat {
+            Repeat::Off => None,
+            Repeat::Both => Some(Period::new(self.width, self.height)),
+        }
+    }
+
     /// The area that is drawn on: the page and its bleed. The page itself has its corner at the origin.
     #[must_use]
     pub fn bounds(&self) -> Rect {
@@ -71,6 +83,25 @@ impl Canvas {
 
 fn is_zero(length: &Length) -> bool {
     *length == Length::ZERO
+}
+
+/// Whether a canvas goes on beyond its borders.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Repeat {
+    /// It ends there.
+    #[default]
+    Off,
+    /// The left border continues on the right and the upper one below: the page is a torus.
+    Both,
+}
+
+impl Repeat {
+    /// Whether it ends at its borders.
+    #[must_use]
+    pub fn is_off(&self) -> bool {
+        *self == Self::Off
+    }
 }
 
 /// How many greys a PNG has.
@@ -428,6 +459,29 @@ impl Placement {
             | Self::Penrose { .. }
             | Self::Pinwheel { .. } => true,
             Self::Poisson { .. } | Self::Uniform { .. } | Self::Points(_) | Self::Relaxed { .. } => false,
+        }
+    }
+}
+
+/// How far stamps without a size are enlarged where sites lie irregularly: at 1.4 squares on Poisson-disk sites leave
+/// 7 % of the paper open, at 1.6 under 2 %.
+pub const IRREGULAR_OVERLAP: f64 = 1.6;
+
+/// The same for stamps with sharp corners: triangles and trapezoids leave 3 % at 1.6, under 2 % at 1.7.
+pub const POINTED_OVERLAP: f64 = 1.7;
+
+impl Placement {
+    /// Whether sites lie so evenly that stamps need not overlap.
+    #[must_use]
+    pub fn is_lattice(&self) -> bool {
+        match self {
+            Self::Poisson { .. }
+            | Self::Uniform { .. }
+            | Self::Penrose { .. }
+            | Self::Pinwheel { .. }
+            | Self::Points(_)
+            | Self::Relaxed { .. } => false,
+            Self::Grid(_) | Self::Hex { .. } | Self::Triangles { .. } => true,
         }
     }
 }

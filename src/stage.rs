@@ -1,6 +1,6 @@
 //! The types between the passes. Each is complete when it is made and never changed after.
 
-use crate::geom::{Angle, Figure, Pieces, Point, Rect};
+use crate::geom::{Angle, Figure, Period, Pieces, Point, Rect, Vec2};
 
 /// Where the tiles of a paint lie.
 #[derive(Debug, Clone)]
@@ -18,6 +18,18 @@ pub struct Sites {
     pub cells: Option<Vec<[i32; 2]>>,
     /// The cells of a tiling, one for every site, where something asks for them. They cover the extent.
     pub tiling: Option<Tiling>,
+    /// On a page that repeats: the period, and what is known of images.
+    pub torus: Option<Torus>,
+}
+
+/// A page that repeats.
+#[derive(Debug, Clone)]
+pub struct Torus {
+    /// After which it does.
+    pub period: Period,
+    /// The site that each of the last sites is an image of, a whole number of periods away. Only the drawing pass adds
+    /// images, so that what lies beyond a border is found like any other tile; all other sites lie in the first period.
+    pub images: Vec<u32>,
 }
 
 /// Cells that lie side by side without gap or overlap.
@@ -59,11 +71,31 @@ impl Tiling {
 }
 
 impl Sites {
+    /// How many sites are no images of others. They come first.
+    #[must_use]
+    pub fn own(&self) -> usize {
+        self.points.len() - self.torus.as_ref().map_or(0, |torus| torus.images.len())
+    }
+
     /// The site that a site is an image of, or itself: what random draws for a tile are keyed by, and its place in the
     /// order of the pile.
     #[must_use]
     pub fn original(&self, site: usize) -> usize {
-        site
+        let image = self.torus.as_ref().zip(site.checked_sub(self.own()));
+        image.and_then(|(torus, image)| torus.images.get(image)).map_or(site, |&site| site as usize)
+    }
+
+    /// The sites that are no images.
+    #[must_use]
+    pub fn without_images(&self) -> Self {
+        let torus = self.torus.as_ref().map(|torus| Torus { images: Vec::new(), ..torus.clone() });
+        Self { points: self.points[..self.own()].to_vec(), torus, ..self.clone() }
+    }
+
+    /// The period of a page that repeats.
+    #[must_use]
+    pub fn period(&self) -> Option<Period> {
+        self.torus.as_ref().map(|torus| torus.period)
     }
 }
 
@@ -77,6 +109,17 @@ pub struct Graph {
     /// The triangles behind the links, each with its least index first and then clockwise on the page, in order; empty
     /// where links are not Delaunay's.
     pub triangles: Vec<[u32; 3]>,
+    /// On a page that repeats: where the neighbours lie.
+    around: Option<Around>,
+}
+
+/// Where the neighbours of every site lie, seen from it: in the page or beyond its borders. A site may have several
+/// images of one neighbour around it, or its own.
+#[derive(Debug, Clone)]
+struct Around {
+    /// Where the places round site i start; one more than there are sites.
+    offsets: Vec<u32>,
+    places: Vec<Point>,
 }
 
 impl Graph {
@@ -103,7 +146,38 @@ impl Graph {
         for i in 0..sites {
             neighbours[offsets[i] as usize..offsets[i + 1] as usize].sort_unstable();
         }
-        Self { offsets, neighbours, triangles }
+        Self { offsets, neighbours, triangles, around: None }
+    }
+
+    /// From what lies around every site of a page that repeats: each neighbour's index, and where it lies. The list is
+    /// the same from both sides.
+    #[must_use]
+    pub fn around(stars: &[Vec<(u32, Point)>], triangles: Vec<[u32; 3]>) -> Self {
+        let mut edges: Vec<[u32; 2]> = (0u32..)
+            .zip(stars)
+            .flat_map(|(site, star)| star.iter().map(move |&(other, _)| [site.min(other), site.max(other)]))
+            .filter(|[a, b]| a != b)
+            .collect();
+        edges.sort_unstable();
+        edges.dedup();
+        let mut around = Around { offsets: vec![0], places: Vec::new() };
+        for star in stars {
+            around.places.extend(star.iter().map(|&(_, place)| place));
+            around.offsets.push(around.places.len() as u32);
+        }
+        Self { around: Some(around), ..Self::new(stars.len(), &edges, triangles) }
+    }
+
+    /// Where the neighbours of a site lie, of which `points` are all.
+    pub fn places<'a>(&'a self, site: usize, points: &'a [Point]) -> impl Iterator<Item = Point> + 'a {
+        let (links, places) = match &self.around {
+            None => (self.neighbours(site), [].as_slice()),
+            Some(around) => {
+                let range = around.offsets[site] as usize..around.offsets[site + 1] as usize;
+                ([].as_slice(), &around.places[range])
+            }
+        };
+        links.iter().map(|&other| points[other as usize]).chain(places.iter().copied())
     }
 
     /// How many sites there are.
@@ -227,6 +301,24 @@ impl Tiles {
         self.pieces = pieces.clone();
         self.piece_corners = corners;
         self
+    }
+
+    /// The same tiles and, after them, images of some, each moved.
+    #[must_use]
+    pub fn with_images(&self, images: &[(u32, Vec2)]) -> Self {
+        let moved = |&(tile, way): &(u32, Vec2)| self.outline(tile as usize).iter().map(|&p| p + way).collect();
+        let rings: Vec<Vec<Point>> = images.iter().map(moved).collect();
+        let own = (0..self.len()).map(|tile| self.outline(tile));
+        let tiles = || (0..self.len()).chain(images.iter().map(|&(tile, _)| tile as usize));
+        Self::new(
+            own.chain(rings.iter().map(Vec::as_slice)),
+            tiles().map(|tile| self.k[tile]).collect(),
+            tiles().map(|tile| self.layers[tile]).collect(),
+            tiles().map(|tile| self.standing[tile]).collect(),
+            // An image is measured where its original is.
+            self.inside.iter().copied().chain(images.iter().map(|_| false)).collect(),
+        )
+        .in_pieces(&self.pieces)
     }
 
     /// The same tiles with other layers.

@@ -223,6 +223,25 @@ fn build_knows_its_other_options() {
 }
 
 #[test]
+fn a_canvas_that_repeats_makes_swatches() {
+    let desk = Desk::new();
+    // Three cells of the grid go round the page, but no even number of a hexagonal lattice's rows.
+    desk.put("rain.kake", SCENE.replace("dpi: 300", "repeat: true").replace("kind = \"hex\"", "kind = \"grid\""));
+    desk.quietly(&["build", "rain.kake", "-o", "rain.svg", "-o", "rain.png", "--as", "pattern"]);
+    let swatch = String::from_utf8(desk.get("rain.svg")).expect("SVG is UTF-8");
+    assert!(swatch.contains(r#"<pattern height="12" id="rain" patternUnits="userSpaceOnUse" width="12">"#), "{swatch}");
+    assert!(swatch.contains(r#"viewBox="0 0 24 24""#));
+    // The swatch makes itself again, and a plain page when told to.
+    desk.quietly(&["build", "rain.svg", "-o", "again.svg"]);
+    assert_eq!(String::from_utf8(desk.get("again.svg")).expect("SVG is UTF-8").replace("again", "rain"), swatch);
+    desk.quietly(&["build", "rain.svg", "-o", "page.svg", "--as", "page"]);
+    assert!(!String::from_utf8(desk.get("page.svg")).expect("SVG is UTF-8").contains("<pattern"));
+    desk.kake(&["build", "rain.kake", "-o", "rain.png", "--as", "pattern"]).refused(2, "no output ends in .svg");
+    desk.kake(&["build", "scene.kake", "-o", "a.svg", "--as", "pattern"]).refused(1, "a canvas that repeats");
+    assert!(!desk.files().contains(&"a.svg".to_owned()));
+}
+
+#[test]
 fn threads_make_no_difference() {
     let desk = Desk::new();
     for threads in ["1", "4"] {

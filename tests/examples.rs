@@ -16,7 +16,7 @@ fn build(file: &str) -> Compiled {
 }
 
 fn is_library(path: &Path) -> bool {
-    name(path) == "manga.kake"
+    ["hand.kake", "manga.kake"].contains(&name(path))
 }
 
 #[test]
@@ -57,7 +57,7 @@ fn parse(text: &str) -> Document {
 }
 
 /// Formatting is done once and for all, and keeps the meaning; so does the way to TOML and back.
-pub(crate) fn keeps_its_meaning(path: &Path) {
+fn keeps_its_meaning(path: &Path) {
     let text = fs::read_to_string(path).expect("the scene can be read");
     let document = parse(&text);
     let once = format::format(&document, &text);

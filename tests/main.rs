@@ -12,5 +12,5 @@ mod documents;
 mod examples;
 mod gallery;
 mod ink;
-mod later;
+mod repeat;
 mod support;

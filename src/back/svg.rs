@@ -8,7 +8,7 @@
 use std::io::{self, Write};
 
 use svg::node::Text;
-use svg::node::element::{self, Element, Rectangle, SVG};
+use svg::node::element::{self, Element, Pattern, Rectangle, SVG};
 
 use super::metadata::{ELEMENT, Metadata, NAMESPACE};
 use super::number;
@@ -24,7 +24,49 @@ use crate::scene::{Cap, Colour};
 /// # Errors
 /// What `out` answers.
 pub fn write(drawing: &Drawing, metadata: Option<&Metadata>, out: &mut dyn Write) -> io::Result<()> {
-    write_head(drawing, metadata, out)?;
+    write_head(drawing, 1.0, metadata, out)?;
+    write_page(drawing, out)?;
+    out.write_all(b"</svg>\n")?;
+    out.flush()
+}
+
+/// How often a swatch shows its pattern each way.
+const SHOWN: f64 = 2.0;
+
+/// Writes an SVG that holds the drawing as a `<pattern>`, and shows it on a rectangle of two periods each way. The page
+/// is one period. `id` names the pattern; characters that an id cannot have become `-`.
+///
+/// # Errors
+/// What `out` answers.
+pub fn write_pattern(drawing: &Drawing, id: &str, metadata: Option<&Metadata>, out: &mut dyn Write) -> io::Result<()> {
+    write_head(drawing, SHOWN, metadata, out)?;
+    let id = pattern_id(id);
+    let page = &drawing.page;
+    let pattern = Pattern::new()
+        .set("id", id.as_str())
+        .set("patternUnits", "userSpaceOnUse")
+        .set("width", number::text(page.width.to_mm()))
+        .set("height", number::text(page.height.to_mm()));
+    writeln!(out, "<defs>\n{}", open_tag(&pattern))?;
+    write_page(drawing, out)?;
+    out.write_all(b"</pattern>\n</defs>\n")?;
+    let shown = Rectangle::new()
+        .set("width", number::text(page.width.to_mm() * SHOWN))
+        .set("height", number::text(page.height.to_mm() * SHOWN))
+        .set("fill", format!("url(#{id})"));
+    writeln!(out, "{shown}\n</svg>")?;
+    out.flush()
+}
+
+/// A name that XML takes as an id and CSS as part of a URL.
+fn pattern_id(name: &str) -> String {
+    let plain: String = name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '_' { c } else { '-' }).collect();
+    if plain.starts_with(|c: char| c.is_ascii_alphabetic()) { plain } else { format!("kakeami-{plain}") }
+}
+
+/// The paper and all layers.
+fn write_page(drawing: &Drawing, out: &mut dyn Write) -> io::Result<()> {
+    write_paper(drawing, out)?;
     let together = pieces::together(drawing);
     // The groups that are open, outermost first, and whether each is a paint's: a group may have the same name.
     let mut open: Vec<(&str, bool)> = Vec::new();
@@ -52,14 +94,13 @@ pub fn write(drawing: &Drawing, metadata: Option<&Metadata>, out: &mut dyn Write
         write_layer(layer, together, out)?;
         close(usize::from(translucent), out)?;
     }
-    close(open.len(), out)?;
-    out.write_all(b"</svg>\n")?;
-    out.flush()
+    close(open.len(), out)
 }
 
-fn write_head(drawing: &Drawing, metadata: Option<&Metadata>, out: &mut dyn Write) -> io::Result<()> {
+/// The root's start and the metadata; the page is shown so often each way.
+fn write_head(drawing: &Drawing, shown: f64, metadata: Option<&Metadata>, out: &mut dyn Write) -> io::Result<()> {
     let page = &drawing.page;
-    let (width, height) = (number::text(page.width.to_mm()), number::text(page.height.to_mm()));
+    let (width, height) = (number::text(page.width.to_mm() * shown), number::text(page.height.to_mm() * shown));
     let root = SVG::new()
         .set("xmlns:inkscape", "http://www.inkscape.org/namespaces/inkscape")
         .set("width", format!("{width}mm"))
@@ -73,7 +114,13 @@ fn write_head(drawing: &Drawing, metadata: Option<&Metadata>, out: &mut dyn Writ
         svg::Node::append(&mut picture, Text::new(metadata.to_json()?));
         writeln!(out, "<metadata>{picture}</metadata>")?;
     }
+    Ok(())
+}
+
+fn write_paper(drawing: &Drawing, out: &mut dyn Write) -> io::Result<()> {
+    let page = &drawing.page;
     if let Some(paper) = page.paper {
+        let (width, height) = (number::text(page.width.to_mm()), number::text(page.height.to_mm()));
         let mut rect =
             Rectangle::new().set("id", "paper").set("width", width).set("height", height).set("fill", paper.hex());
         if paper.a < 255 {
@@ -251,6 +298,25 @@ mod tests {
         </g>
         </svg>
         "##);
+    }
+
+    #[test]
+    fn a_pattern_holds_the_page() {
+        let mut out = Vec::new();
+        write_pattern(&small(), "rain 2/é", None, &mut out).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        let document = roxmltree::Document::parse(&text).unwrap();
+        let find = |name: &str| document.descendants().find(|node| node.tag_name().name() == name).unwrap();
+        let pattern = find("pattern");
+        let attribute = |name: &str| pattern.attribute(name).unwrap();
+        assert_eq!([attribute("id"), attribute("width"), attribute("height")], ["rain-2--", "60", "40.5"]);
+        assert_eq!(document.root_element().attribute("viewBox"), Some("0 0 120 81"));
+        let shown = document.root_element().children().find(|node| node.tag_name().name() == "rect").unwrap();
+        assert_eq!(shown.attribute("fill"), Some("url(#rain-2--)"));
+        // All that the page has is in it, and a reader finds it.
+        assert_eq!(pattern.descendants().filter(|node| node.tag_name().name() == "path").count(), 5);
+        assert!(usvg::Tree::from_str(&text, &usvg::Options::default()).unwrap().patterns().len() == 1);
+        assert_eq!([pattern_id("3"), pattern_id("")], ["kakeami-3", "kakeami-"]);
     }
 
     #[test]

@@ -14,7 +14,7 @@ use crate::scene::Limits;
 use crate::{Compiled, Config, compile};
 
 use super::files::{Opened, Pending, open, plain, print, write_beside};
-use super::picture::{Embed, is_plot, metadata, set_plot, take_over};
+use super::picture::{Embed, Form, is_plot, metadata, set_plot, take_over};
 use super::progress::Progress;
 use super::{Ended, SceneArgs, report};
 
@@ -38,6 +38,9 @@ pub(super) struct BuildArgs {
     /// Draw this paint alone
     #[arg(long, value_name = "PAINT")]
     only: Option<String>,
+    /// What an SVG is: a page, or a swatch with the page as a pattern, for a canvas that repeats
+    #[arg(long = "as", value_enum, value_name = "FORM")]
+    form: Option<Form>,
     /// For pen plotters: one layer for each ink and pen width, strokes only, joined and put in an order with short ways
     /// between them; says how far the pen goes. Outputs are .svg
     #[arg(long)]
@@ -138,6 +141,9 @@ fn outputs(arguments: &BuildArgs) -> Result<Vec<(PathBuf, Kind)>, String> {
         outputs.push(PathBuf::from(name));
     }
     let several = arguments.seeds.is_some_and(|Seeds(from, to)| from < to);
+    if arguments.form == Some(Form::Pattern) && outputs.iter().all(|output| kind_of(output) != Ok(Kind::Svg)) {
+        return Err("`--as pattern` is about SVG: no output ends in .svg".to_owned());
+    }
     for (i, output) in outputs.iter().enumerate() {
         if several && !output.to_string_lossy().contains("{seed}") {
             return Err(format!("{}: with several seeds an output needs {{seed}} in its name", output.display()));
@@ -169,6 +175,7 @@ fn build(arguments: &BuildArgs, opened: &Opened, outputs: &[(PathBuf, Kind)], se
     config.lower.dpi = arguments.dpi;
     config.only.clone_from(&arguments.only);
     take_over(&mut config, opened);
+    let form = arguments.form.or_else(|| Form::of(opened)).unwrap_or(Form::Page);
     let mut compiled = compile(&opened.path, &opened.loader, &config, &mut progress);
     if outputs.iter().any(|(_, kind)| *kind == Kind::Png) {
         check_pixels(&mut compiled, &config.lower.limits);
@@ -183,8 +190,13 @@ fn build(arguments: &BuildArgs, opened: &Opened, outputs: &[(PathBuf, Kind)], se
     if ended != Ended::Done {
         return ended;
     }
+    let repeats = compiled.lowered.scene.as_ref().is_some_and(|scene| scene.canvas.period().is_some());
+    if form == Form::Pattern && !repeats {
+        eprintln!("kake: a pattern needs a canvas that repeats: `canvas {{ … repeat: true }}`");
+        return Ended::Fault;
+    }
     let is_plotted = arguments.plot || opened.picture.as_ref().is_some_and(is_plot);
-    let mut metadata = metadata(arguments.embed, &config, opened, &compiled);
+    let mut metadata = metadata(arguments.embed, &config, (opened, form), &compiled);
     let plot = (is_plotted && outputs.iter().any(|(_, kind)| *kind == Kind::Svg)).then(|| {
         progress.step("plot", "");
         plot(drawing)
@@ -203,7 +215,7 @@ fn build(arguments: &BuildArgs, opened: &Opened, outputs: &[(PathBuf, Kind)], se
             (Some(plot), Kind::Svg) => &plot.drawing,
             (_, Kind::Svg | Kind::Png | Kind::Pdf | Kind::Json) => drawing,
         };
-        match write(drawing, metadata.as_ref(), *kind, &target) {
+        match write(drawing, metadata.as_ref(), (*kind, form), &target) {
             Ok(file) => pending.extend(file.map(|file| (target, file))),
             Err(error) => return cannot_write(&target, &error),
         }
@@ -275,11 +287,17 @@ fn check_pixels(compiled: &mut Compiled, limits: &Limits) {
 pub(super) fn write(
     drawing: &Drawing,
     metadata: Option<&Metadata>,
-    kind: Kind,
+    (kind, form): (Kind, Form),
     target: &Path,
 ) -> io::Result<Option<Pending>> {
     let fill = |out: &mut dyn Write| match kind {
-        Kind::Svg => svg::write(drawing, metadata, out),
+        Kind::Svg => match form {
+            Form::Page => svg::write(drawing, metadata, out),
+            Form::Pattern => {
+                let stem = target.file_stem().unwrap_or_default().to_string_lossy();
+                svg::write_pattern(drawing, &stem, metadata, out)
+            }
+        },
         Kind::Pdf => pdf::write(drawing, metadata, out),
         Kind::Json => json::write(drawing, out),
         Kind::Png => png::write(drawing, metadata, out).map_err(|error| match error {

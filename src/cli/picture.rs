@@ -21,6 +21,33 @@ pub(super) enum Embed {
     None,
 }
 
+/// What an SVG is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Form {
+    /// The page itself
+    Page,
+    /// A swatch: the page as a pattern, shown two by two times
+    Pattern,
+}
+
+impl Form {
+    /// The option that a picture was made with.
+    const OPTION: &str = "as";
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Page => "page",
+            Self::Pattern => "pattern",
+        }
+    }
+
+    /// What a picture was made as, if it says so.
+    pub(super) fn of(opened: &Opened) -> Option<Self> {
+        let said = opened.picture.as_ref()?.options.get(Self::OPTION)?;
+        [Self::Page, Self::Pattern].into_iter().find(|form| form.name() == said)
+    }
+}
+
 /// Sets what a picture was made with, unless the command line says otherwise.
 pub(super) fn take_over(config: &mut Config, opened: &Opened) {
     let Some(picture) = &opened.picture else { return };
@@ -49,7 +76,12 @@ pub(super) fn set_plot(picture: &mut Metadata) {
 }
 
 /// How a picture was made, for the picture itself.
-pub(super) fn metadata(embed: Embed, config: &Config, opened: &Opened, compiled: &Compiled) -> Option<Metadata> {
+pub(super) fn metadata(
+    embed: Embed,
+    config: &Config,
+    (opened, form): (&Opened, Form),
+    compiled: &Compiled,
+) -> Option<Metadata> {
     let scene = compiled.lowered.scene.as_ref()?;
     if embed == Embed::None {
         return None;
@@ -60,6 +92,9 @@ pub(super) fn metadata(embed: Embed, config: &Config, opened: &Opened, compiled:
     }
     if let Some(only) = &config.only {
         options.insert("only".to_owned(), only.clone());
+    }
+    if form != Form::Page {
+        options.insert(Form::OPTION.to_owned(), form.name().to_owned());
     }
     Some(Metadata {
         version: env!("CARGO_PKG_VERSION").to_owned(),

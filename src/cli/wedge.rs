@@ -9,6 +9,7 @@ use crate::wedge::{Wedge, WedgeConfig, wedge};
 
 use super::build::{Kind, cannot_write, kind_of, parse_dpi, write};
 use super::files::{open, print};
+use super::picture::Form;
 use super::{Ended, SceneArgs, report};
 
 /// Steps where `--steps` does not say otherwise.
@@ -75,7 +76,7 @@ pub(super) fn run(arguments: &WedgeArgs) -> Ended {
     let Some(wedge) = &drawn.wedge else { return ended };
     let mut pending = Vec::new();
     for (target, kind) in outputs {
-        match write(&wedge.drawing, None, kind, target) {
+        match write(&wedge.drawing, None, (kind, Form::Page), target) {
             Ok(file) => pending.extend(file.map(|file| (target, file))),
             Err(error) => return cannot_write(target, &error),
         }

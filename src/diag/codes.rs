@@ -163,6 +163,15 @@ codes! {
          all over, and `range: fit` presses the whole picture into the tone's range."
     Checkerboard "checkerboard" "A checkerboard needs a grid"
         "`checkerboard()` alternates along rows and columns, which only `grid(...)` has."
+    Repeat "repeat" "This does not go with a canvas that repeats"
+        "On a canvas with `repeat: true` the left border continues on the right and the upper one below. Tiles must not meet \
+         their own copies, so each side is at least two tiles long, and a pattern has to come out even after one period."
+    Stretched "stretched" "A lattice was stretched to fit a canvas that repeats"
+        "Between the borders of a canvas that repeats lies a whole number of cells, and an even number of rows of a \
+         hexagonal lattice. The message names the size that was asked for and the one that fits."
+    Seam "seam" "A field does not repeat"
+        "On a canvas that repeats a field should have the same values at opposite borders, as noise has, or tone jumps where \
+         copies meet. Strokes continue all the same."
     Hand "hand" "A hand strays too far"
         "Strokes that wander by more than half of the pitch run into each other, and strokes that overshoot by more than the \
          distance of tiles cross their neighbours. The picture is drawn as the scene says."

@@ -131,7 +131,8 @@ impl Hull {
                 return;
             }
             crossed += 1;
-            starts_in = beyond[0] <= TOLERANCE;
+            // As the search for zeros sees it.
+            starts_in = beyond[0] < 0.0;
             zeros(beyond, &mut self.zeros);
         }
         match (crossed, self.zeros.as_slice()) {
@@ -258,6 +259,23 @@ mod tests {
         assert_eq!(hull.line(Point::new(-4.0, 0.0), Point::new(4.0, 0.0)), Some((0.25, 0.75)));
         assert_eq!(hull.line(Point::new(-4.0, 3.0), Point::new(4.0, 3.0)), None);
         assert_eq!(Hull::default().line(Point::new(0.0, 0.0), Point::new(1.0, 0.0)), None);
+    }
+
+    #[test]
+    fn a_curve_may_start_on_the_outline() {
+        let mut hull = hull(&hexagon());
+        for (start, kept) in
+            [(-2.0, (0.0, 0.4)), (-2.0 + 1e-10, (0.0, 0.4)), (-2.0 - 1e-10, (0.0, 0.4)), (-2.5, (0.05, 0.45))]
+        {
+            let mut out = Vec::new();
+            hull.cut(&Cubic::line(Point::new(start, 0.0), Point::new(start + 10.0, 0.0)), 0, &mut out);
+            assert_eq!(out.len(), 1, "{start}: {out:?}");
+            assert!((out[0].0 - kept.0).abs() < 1e-9 && (out[0].1 - kept.1).abs() < 1e-9, "{start}: {out:?}");
+            // The same into it and to its end there.
+            out.clear();
+            hull.cut(&Cubic::line(Point::new(start, 0.0), Point::new(0.0, 0.0)), 0, &mut out);
+            assert!(out.len() == 1 && out[0].1 == 1.0 && out[0].0 < 0.3, "{start}: {out:?}");
+        }
     }
 
     #[test]

@@ -11,6 +11,7 @@ pub mod course;
 mod figure;
 pub mod hull;
 mod length;
+mod period;
 mod point;
 mod polygon;
 
@@ -18,5 +19,6 @@ pub use angle::Angle;
 pub use bezier::Cubic;
 pub use figure::{BadOutline, Figure, Pieces, simple_outline};
 pub use length::Length;
+pub use period::{Period, whole_steps};
 pub use point::{Point, Rect, Vec2};
 pub use polygon::{Polygon, ring_area, ring_bounds, ring_contains};

@@ -3,13 +3,12 @@
 use std::rc::Rc;
 
 use crate::diag::{Code, Diagnostic, did_you_mean};
-use crate::geom::{Length, Point, Rect};
+use crate::geom::{Length, Period, Point, Rect};
 use crate::region::Region;
-use crate::scene::{Canvas, Colour, Depth};
+use crate::scene::{Canvas, Colour, Depth, Repeat};
 use crate::span::Span;
 use crate::syntax::ast::{Expr, Property, StatementKind};
 
-use super::call::not_yet;
 use super::convert::Slot;
 use super::cx::Cx;
 use super::eval;
@@ -36,8 +35,7 @@ const SHEETS: [(&str, f64, f64); 14] = [
 const SHEET_NAMES: &[&str] =
     &["a0", "a1", "a2", "a3", "a4", "a5", "a6", "b4", "b5", "jis_b4", "jis_b5", "legal", "letter", "tabloid"];
 
-const PROPERTIES: [&str; 9] = ["size", "bleed", "dpi", "pixels", "paper", "ink", "depth", "unit", "gain"];
-const LATER: [&str; 1] = ["repeat"];
+const PROPERTIES: [&str; 10] = ["size", "bleed", "dpi", "pixels", "paper", "ink", "depth", "unit", "gain", "repeat"];
 
 /// Pixels per inch where neither `dpi` nor `pixels` says otherwise: the least that print shops take for line art.
 const DEFAULT_DPI: f64 = 600.0;
@@ -61,6 +59,7 @@ pub(super) fn default() -> Canvas {
         ink: Colour::BLACK,
         depth: Depth::Eight,
         unit: Length::mm(1.0),
+        repeat: Repeat::Off,
         gain: Length::ZERO,
     }
 }
@@ -100,6 +99,7 @@ pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Option<Canvas> {
     let paper = reader.colour(find("paper"), &["none"], Some(Colour::WHITE));
     let ink = reader.colour(find("ink"), &[], Some(Colour::BLACK));
     let depth = reader.depth(find("depth"));
+    let repeat = reader.repeat(find("repeat"));
     let gain = reader.gain(find("gain"));
     // A property that is not known may have been meant for it.
     let is_known = |property: &&Property| PROPERTIES.contains(&property.name.name.as_str());
@@ -121,7 +121,17 @@ pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Option<Canvas> {
     let bounds = Rect::new(Point::default(), Point::new(width.to_mm(), height.to_mm())).grown(grown);
     cx.page = Some(Region::rect(bounds));
     let (paper, ink, depth, unit, gain) = (paper?, ink??, depth?, Length::mm(unit?), gain?);
-    Some(Canvas { width, height, bleed: bleed?, pixels, dpi, paper, ink, depth, unit, gain })
+    let (repeat, bleed) = (repeat?, bleed?);
+    if repeat == Repeat::Both && bleed > Length::ZERO {
+        let message = "a canvas that repeats goes on beyond its borders: it has no bleed";
+        cx.report(Diagnostic::error(Code::Repeat, find("bleed").map_or(span, |bleed| bleed.value.span), message));
+        return None;
+    }
+    cx.period = match repeat {
+        Repeat::Off => None,
+        Repeat::Both => Some(Period::new(width, height)),
+    };
+    Some(Canvas { width, height, bleed, pixels, dpi, paper, ink, depth, unit, gain, repeat })
 }
 
 fn check_property(cx: &mut Cx<'_, '_>, property: &Property, earlier: &[&Property]) {
@@ -130,8 +140,6 @@ fn check_property(cx: &mut Cx<'_, '_>, property: &Property, earlier: &[&Property
         let message = format!("the property `{}` is given twice", name.name);
         let note = earlier.name.span;
         cx.report(Diagnostic::error(Code::Duplicate, name.span, message).note(note, "first given here"));
-    } else if LATER.contains(&name.name.as_str()) {
-        cx.report(not_yet(&name.name, name.span));
     } else if !PROPERTIES.contains(&name.name.as_str()) {
         let hint = did_you_mean(&name.name, PROPERTIES)
             .unwrap_or_else(|| format!("a canvas has {}", PROPERTIES.map(|name| format!("`{name}`")).join(", ")));
@@ -288,6 +296,15 @@ impl<'a> Reader<'_, 'a, '_> {
             Value::Number(8.0) => Some(Depth::Eight),
             Value::Number(1.0) => Some(Depth::One),
             Value::Number(_) => self.refuse(property.value.span, "`depth` is 8 (grey) or 1 (ink or paper)"),
+            _ => None,
+        }
+    }
+
+    fn repeat(&mut self, property: Option<&'a Property>) -> Option<Repeat> {
+        let Some(property) = property else { return Some(Repeat::Off) };
+        match eval::expect(self.cx, self.scope, &property.value, Slot::of(Kind::Bool)) {
+            Value::Bool(true) => Some(Repeat::Both),
+            Value::Bool(false) => Some(Repeat::Off),
             _ => None,
         }
     }

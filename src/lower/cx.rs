@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::diag::{Code, Diagnostic, grouped};
 use crate::field::Image;
-use crate::geom::Length;
+use crate::geom::{Length, Period};
 use crate::loader::Loader;
 use crate::region::Region;
 use crate::region::svg::SvgFile;
@@ -38,6 +38,8 @@ pub(super) struct Cx<'a, 'c> {
     pub(super) dpi: Option<f64>,
     /// The page, once it is known.
     pub(super) page: Option<Region>,
+    /// The period of a page that repeats.
+    pub(super) period: Option<Period>,
     /// How far ink spreads, and where that is said.
     pub(super) gain: Option<(Length, Span)>,
     /// Values that were set, by module and name.
@@ -88,6 +90,7 @@ impl<'a, 'c> Cx<'a, 'c> {
             unit: 1.0,
             dpi: None,
             page: None,
+            period: None,
             gain: None,
             set: BTreeMap::new(),
             settled: BTreeMap::new(),

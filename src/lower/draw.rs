@@ -15,7 +15,7 @@ use super::cx::Cx;
 use super::scope::{Binding, Scope};
 use super::tone::{self, ToneValue};
 use super::value::{Kind, Value};
-use super::{branch, canvas, eval, modules, names, vocabulary};
+use super::{branch, canvas, eval, modules, names, repeat, vocabulary};
 
 /// What is drawn before paints have their names.
 enum Drawn {
@@ -320,6 +320,10 @@ fn paint<'a>(
         _ => None,
     };
     let (Value::Region(area), Value::Tone(value)) = (area, value) else { return None };
+    let area = match cx.period {
+        Some(period) => repeat::folded(cx, period, area, region.span)?,
+        None => area,
+    };
     check_region(cx, &area, region.span)?;
     Some(Painted { region: area, tone: value, name, seed, span, tone_span: tone.span })
 }
@@ -345,7 +349,9 @@ fn outline<'a>(
         cx.report_value(Diagnostic::error(Code::Range, place, "`pen` must be greater than zero"));
         return None;
     }
-    check_region(cx, &area, region.span)?;
+    if cx.period.is_none() || area.is_empty() {
+        check_region(cx, &area, region.span)?;
+    }
     Some(Outline { region: area, pen: Length::mm(width), span })
 }
 
@@ -436,6 +442,9 @@ fn finish(cx: &mut Cx<'_, '_>, drawn: Vec<Drawn>, names: &mut impl Iterator<Item
             Drawn::Paint(painted) => {
                 let name = names.next().unwrap_or_default();
                 let Some(tone) = painted.tone.settle(cx, painted.tone_span) else { continue };
+                if let Some(period) = cx.period {
+                    repeat::check(cx, period, &painted.region, (&tone, &painted.tone), painted.span);
+                }
                 draws.push(Draw::Paint(Box::new(Paint {
                     name,
                     tone_name: painted.tone.name.clone(),

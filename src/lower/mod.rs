@@ -21,6 +21,7 @@ mod modules;
 mod names;
 mod ops;
 mod params;
+mod repeat;
 mod scope;
 mod tone;
 mod value;

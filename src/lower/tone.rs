@@ -293,6 +293,11 @@ impl ToneValue {
         self.properties.iter().find(|given| given.name == name)
     }
 
+    /// Where a property is given, if it is.
+    pub(super) fn span_of(&self, name: &str) -> Option<Span> {
+        self.get(name).map(|given| given.span)
+    }
+
     fn word(&self, name: &str) -> Option<&'static str> {
         match self.get(name)?.value {
             Value::Word(word) => Some(word),

@@ -5,7 +5,7 @@ use crate::geom::{Length, Point, Rect};
 use crate::region::Region;
 use crate::scene::{
     AngleRule, Asked, Blend, Canvas, Cap, Colour, Depth, Domain, Edge, Fill, FillKind, Hand, Hatch, Link, Over, Paint,
-    Placement, Shape, Stack, Tone,
+    Placement, Repeat, Shape, Stack, Tone,
 };
 use crate::span::{Sources, Span, Syntax};
 
@@ -21,6 +21,7 @@ pub(crate) fn canvas(width: f64, height: f64) -> Canvas {
         ink: Colour::BLACK,
         depth: Depth::Eight,
         unit: Length::mm(1.0),
+        repeat: Repeat::Off,
         gain: Length::ZERO,
     }
 }

@@ -1,6 +1,13 @@
 //! Links: which tiles are neighbours.
 //!
-//! In: the sites. Out: a [`Graph`] over them. Every site has its place in the graph, with no links where it has none.
+//! In: the sites. Out: a [`Graph`] over them. Every site has its place in the graph, with no links where it has none. On
+//! a page that repeats sites are linked across its borders.
+
+mod torus;
+
+use std::cmp::Ordering;
+
+use std::borrow::Cow;
 
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
@@ -12,8 +19,19 @@ use crate::stage::{Graph, Sites};
 #[must_use]
 pub fn link(sites: &Sites, link: Link) -> Graph {
     match link {
-        Link::Delaunay => delaunay(&sites.points),
+        Link::Delaunay => match sites.period() {
+            Some(period) => torus::delaunay(&sites.points, period, sites.spacing),
+            None => delaunay(&sites.points, Ord::cmp),
+        },
         Link::Edges => shared_edges(sites),
+    }
+}
+
+/// The Delaunay links of sites that `graph` links by another rule: those bound Voronoi cells, whatever makes neighbours.
+pub(super) fn delaunay_links<'a>(sites: &Sites, graph: &'a Graph, rule: Link) -> Cow<'a, Graph> {
+    match rule {
+        Link::Delaunay => Cow::Borrowed(graph),
+        Link::Edges => Cow::Owned(link(sites, Link::Delaunay)),
     }
 }
 
@@ -28,8 +46,8 @@ fn shared_edges(sites: &Sites) -> Graph {
 /// Where four or more sites lie on one circle with none inside, several triangulations are Delaunay's, and rounding or
 /// the order of insertion would choose between them. Here the whole polygon of such sites is cut into the fan from its
 /// site of least index, so that lattices look the same everywhere and on every machine. Of sites that lie in one place
-/// only the first is linked. Sites on one line are linked along it.
-fn delaunay(points: &[Point]) -> Graph {
+/// only the first is linked. Sites on one line are linked along it. `order` is that of the indices.
+fn delaunay(points: &[Point], order: impl Fn(&u32, &u32) -> Ordering) -> Graph {
     let corners = match widest_triangle(points) {
         Ok(corners) => corners,
         Err(line) => return Graph::new(points.len(), &line, Vec::new()),
@@ -59,7 +77,7 @@ fn delaunay(points: &[Point]) -> Graph {
         polygon.clear();
         if sides.iter().all(|edge| !tied[edge.as_undirected().index()]) {
             polygon.extend(sides.map(|edge| edge.from().data().site));
-            cut(&mut polygon, &mut triangles, &mut edges);
+            cut(&mut polygon, &order, &mut triangles, &mut edges);
             continue;
         }
         // Greater polygons are walked along their outline, so from a face that has a part in it.
@@ -79,14 +97,19 @@ fn delaunay(points: &[Point]) -> Graph {
                 break;
             }
         }
-        cut(&mut polygon, &mut triangles, &mut edges);
+        cut(&mut polygon, &order, &mut triangles, &mut edges);
     }
     Graph::new(points.len(), &edges, sorted(points.len(), &triangles))
 }
 
 /// Cuts a polygon into the fan from its site of least index.
-fn cut(polygon: &mut [u32], triangles: &mut Vec<[u32; 3]>, edges: &mut Vec<[u32; 2]>) {
-    let least = (0..polygon.len()).min_by_key(|&i| polygon[i]).unwrap_or(0);
+fn cut(
+    polygon: &mut [u32],
+    order: impl Fn(&u32, &u32) -> Ordering,
+    triangles: &mut Vec<[u32; 3]>,
+    edges: &mut Vec<[u32; 2]>,
+) {
+    let least = (0..polygon.len()).min_by(|&i, &j| order(&polygon[i], &polygon[j])).unwrap_or(0);
     polygon.rotate_left(least);
     let [apex, rest @ ..] = polygon else { return };
     for pair in rest.windows(2) {
@@ -209,7 +232,7 @@ fn without_repeats(points: &[Point]) -> Vec<u32> {
     };
     let mut sites: Vec<u32> = (0..points.len() as u32).collect();
     // The sort is stable: of several in one place the first comes first, and that one stays.
-    sites.sort_by(|a, b| place(a).partial_cmp(&place(b)).unwrap_or(std::cmp::Ordering::Equal));
+    sites.sort_by(|a, b| place(a).partial_cmp(&place(b)).unwrap_or(Ordering::Equal));
     sites.dedup_by_key(|site| place(site));
     sites.sort_unstable();
     sites
@@ -278,10 +301,16 @@ mod tests {
 
     fn linked(points: &[Point]) -> Graph {
         let area = rect(0.0, 0.0, 1.0, 1.0);
-        link(
-            &Sites { points: points.to_vec(), domain: area, extent: area, spacing: 1.0, cells: None, tiling: None },
-            Link::Delaunay,
-        )
+        let sites = Sites {
+            points: points.to_vec(),
+            domain: area,
+            extent: area,
+            spacing: 1.0,
+            cells: None,
+            tiling: None,
+            torus: None,
+        };
+        link(&sites, Link::Delaunay)
     }
 
     fn placed(width: f64, height: f64, placement: Placement) -> Vec<Point> {

@@ -62,8 +62,8 @@ pub struct Travel {
 
 impl Travel {
     fn of(paths: &[Path]) -> Self {
-        let down = paths.iter().map(Path::length).sum();
-        let up = paths.windows(2).map(|pair| pair[0].ends()[1].distance(pair[1].ends()[0])).sum();
+        let down = paths.iter().fold(0.0, |down, path| down + path.length());
+        let up = paths.windows(2).fold(0.0, |up, pair| up + pair[0].ends()[1].distance(pair[1].ends()[0]));
         Self { lifts: paths.len(), down: Length::mm(down), up: Length::mm(up) }
     }
 

@@ -129,5 +129,9 @@ fn noise(call: &mut Call<'_, '_, '_>) -> Option<Value> {
     };
     let mut stream = Key { seed, name: &name, purpose: "noise" }.stream();
     let noise = Noise::new(scale, octaves, stream.below(u64::MAX));
+    let noise = match call.cx.period {
+        Some(period) => noise.repeating(period.width, period.height),
+        None => noise,
+    };
     field(Field::new(crate::field::Node::Noise(noise)), FieldUnit::Number)
 }

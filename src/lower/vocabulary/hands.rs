@@ -79,7 +79,8 @@ fn share(call: &mut Call<'_, '_, '_>, name: &str, most: f64) -> Option<f64> {
     }
     let message = format!("`{name}` must lie between 0% and {}%", most * 100.0);
     let diagnostic = Diagnostic::error(Code::Range, call.span_of(name), message);
-    let is_per_cent = share >= 1.0 && share <= most * 100.0;
+    // A number without its sign is many times too much.
+    let is_per_cent = share > 2.0 && share <= most * 100.0;
     call.cx.report_value(
         diagnostic.maybe_hint(is_per_cent.then(|| format!("a share is written in per cent: `{share}%`"))),
     );

@@ -10,11 +10,14 @@ mod standing;
 mod unsteady;
 pub(crate) mod voronoi;
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 
 use crate::diag::{Code, Diagnostic};
-use crate::geom::{Figure, Length, Pieces, Point};
-use crate::region::Region;
+use crate::geom::{Figure, Length, Period, Pieces, Point, Rect, Vec2};
+use crate::pass::link;
+use crate::region::{FillRule, Region};
 use crate::scene::{Asked, Blend, Canvas, Edge, Paint, Shape};
 use crate::stage::{Angles, Graph, Layers, Sites, Standing, Tiles, Tiling};
 use darkness::Bed;
@@ -67,7 +70,16 @@ pub fn cut(
 ) -> Tiles {
     let visible = visible(paint, canvas);
     let ground = Ground::new(&visible, paint);
-    let shaper = Shaper::new(paint, sites, graph, angles);
+    let links = match paint.tone.shape {
+        Shape::Voronoi { .. } => link::delaunay_links(sites, graph, paint.tone.link),
+        Shape::Rect { .. }
+        | Shape::Hexagon { .. }
+        | Shape::Triangle { .. }
+        | Shape::Trapezoid { .. }
+        | Shape::Stamp { .. }
+        | Shape::Cell { .. } => Cow::Borrowed(graph),
+    };
+    let shaper = Shaper::new(paint, sites, &links, angles);
     let chunks: Vec<Chunk> = (0..sites.points.len().div_ceil(CHUNK))
         .into_par_iter()
         .map(|chunk| {
@@ -123,14 +135,32 @@ pub fn reckon(paint: &Paint, canvas: &Canvas, sites: &Sites, graph: &Graph, angl
     darkness::reckon(&Bed { paint, canvas, sites, graph, angles, tiles })
 }
 
-/// The part of a paint's region that lies on the canvas: what is off the canvas is neither drawn nor measured.
+/// The part of a paint's region that lies on the canvas: what is off the canvas is neither drawn nor measured. Where the
+/// canvas repeats, the region goes on a whole period beyond it on every side, which no tile of a site on it leaves.
 pub(crate) fn visible(paint: &Paint, canvas: &Canvas) -> Region {
+    if let Some(period) = canvas.period() {
+        return repeated(&paint.region, period);
+    }
     let (page, bounds) = (canvas.bounds(), paint.region.bounds());
     let is_on_canvas = page.min.x <= bounds.min.x
         && page.min.y <= bounds.min.y
         && bounds.max.x <= page.max.x
         && bounds.max.y <= page.max.y;
     if is_on_canvas { paint.region.clone() } else { paint.region.intersection(&Region::rect(page)) }
+}
+
+/// A region that lies in the first period with its images in all periods next to it.
+fn repeated(region: &Region, period: Period) -> Region {
+    let page = period.area();
+    let size = page.max - page.min;
+    if Region::rect(page).difference(region).is_empty() {
+        return Region::rect(Rect::new(page.min - size, page.max + size));
+    }
+    let rings = || region.polygons().iter().flat_map(|polygon| polygon.rings());
+    let ways = [-1.0, 0.0, 1.0].map(|row| [-1.0, 0.0, 1.0].map(|column| Vec2::new(column * size.x, row * size.y)));
+    let moved =
+        ways.as_flattened().iter().flat_map(|&way| rings().map(move |ring| ring.iter().map(|&p| p + way).collect()));
+    Region::from_rings(moved.collect(), FillRule::NonZero)
 }
 
 fn cut_chunk(

@@ -1,14 +1,7 @@
 //! Stamps: outlines of one size that are set on every site, turned with the tile's angle or upright.
 
 use crate::geom::{Angle, Length, Pieces, Point, Vec2, ring_bounds};
-use crate::scene::{Placement, Shape};
-
-/// How far stamps without a size are enlarged where sites lie irregularly: at 1.4 squares on Poisson-disk sites leave
-/// 7 % of the paper open, at 1.6 under 2 %.
-const IRREGULAR_OVERLAP: f64 = 1.6;
-
-/// The same for stamps with sharp corners: triangles and trapezoids leave 3 % at 1.6, under 2 % at 1.7.
-const POINTED_OVERLAP: f64 = 1.7;
+use crate::scene::{IRREGULAR_OVERLAP, POINTED_OVERLAP, Placement, Shape};
 
 /// The side of an equilateral triangle whose area is 1: 2 / ⁴√3.
 const SIDE_OF_UNIT_TRIANGLE: f64 = 1.519_671_371_303_185_2;
@@ -28,7 +21,7 @@ impl Stamp {
         let scale = |overlap: Option<f64>, is_sized: bool, irregular: f64| match overlap {
             Some(overlap) => overlap,
             None if is_sized => 1.0,
-            None if is_lattice(place) => 1.0,
+            None if place.is_lattice() => 1.0,
             None => irregular,
         };
         let or_spacing = |size: Option<Length>| size.map_or(spacing, Length::to_mm);
@@ -90,19 +83,6 @@ impl Stamp {
         let across = along.turned();
         ring.clear();
         ring.extend(self.corners.iter().map(|corner| site + along * corner.x + across * corner.y));
-    }
-}
-
-/// Whether sites lie so evenly that stamps need not overlap.
-fn is_lattice(place: &Placement) -> bool {
-    match place {
-        Placement::Poisson { .. }
-        | Placement::Uniform { .. }
-        | Placement::Penrose { .. }
-        | Placement::Pinwheel { .. }
-        | Placement::Points(_)
-        | Placement::Relaxed { .. } => false,
-        Placement::Grid(_) | Placement::Hex { .. } | Placement::Triangles { .. } => true,
     }
 }
 

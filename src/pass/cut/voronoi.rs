@@ -18,7 +18,7 @@ pub(crate) struct Cells<'a> {
     sites: &'a Sites,
     graph: &'a Graph,
     bounds: Rect,
-    /// Whether no site has a neighbour: there is one site, or all coincide.
+    /// Whether no site has a neighbour: there is one site, or all coincide, and the page does not repeat.
     is_single: bool,
     inset: f64,
     round: f64,
@@ -36,7 +36,7 @@ impl<'a> Cells<'a> {
             sites,
             graph,
             bounds,
-            is_single: graph.edges().next().is_none(),
+            is_single: sites.torus.is_none() && graph.edges().next().is_none(),
             inset: inset.to_mm(),
             round: round.to_mm(),
         }
@@ -46,14 +46,14 @@ impl<'a> Cells<'a> {
     /// before it.
     pub(crate) fn outline(&self, tile: usize, ring: &mut Vec<Point>, spare: &mut Vec<Point>) {
         let site = self.sites.points[tile];
-        let neighbours = self.graph.neighbours(tile);
+        let mut neighbours = self.graph.places(tile, &self.sites.points).peekable();
         ring.clear();
-        if neighbours.is_empty() && !(self.is_single && tile == 0) {
+        if neighbours.peek().is_none() && !(self.is_single && tile == 0) {
             return;
         }
         ring.extend(self.bounds.corners());
-        for &neighbour in neighbours {
-            if let Some(half) = HalfPlane::nearer(site, self.sites.points[neighbour as usize]) {
+        for neighbour in neighbours {
+            if let Some(half) = HalfPlane::nearer(site, neighbour) {
                 clip_convex(ring, &half, spare);
             }
         }
@@ -66,8 +66,13 @@ impl<'a> Cells<'a> {
     }
 }
 
-/// The box that cells end in: the extent of the sites, and half a spacing round the sites on its border or beyond.
-fn bounds(sites: &Sites) -> Rect {
+/// The box that cells end in: the extent of the sites, and half a spacing round the sites on its border or beyond. On a
+/// torus no cell comes as far as a period beyond the first.
+pub(crate) fn bounds(sites: &Sites) -> Rect {
+    if let Some(period) = sites.period() {
+        let size = period.area().max - Point::default();
+        return Rect::new(Point::default() - size, Point::default() + size * 2.0);
+    }
     let reach = Vec2::new(sites.spacing / 2.0, sites.spacing / 2.0);
     let within = sites.extent.grown(-TOLERANCE);
     let beyond = sites.points.iter().filter(|&&site| !within.contains(site));
@@ -156,7 +161,7 @@ mod tests {
         }
         let extent = Rect::new(Point::default(), Point::new(side as f64, side as f64));
         let graph = Graph::new(points.len(), &edges, Vec::new());
-        (Sites { points, domain: extent, extent, spacing: 1.0, cells: None, tiling: None }, graph)
+        (Sites { points, domain: extent, extent, spacing: 1.0, cells: None, tiling: None, torus: None }, graph)
     }
 
     fn outline(sites: &Sites, graph: &Graph, inset: f64, round: f64, tile: usize) -> Vec<Point> {
@@ -193,7 +198,7 @@ mod tests {
     fn a_site_alone_has_the_box_and_its_duplicates_nothing() {
         let extent = Rect::new(Point::default(), Point::new(2.0, 2.0));
         let points = vec![Point::new(1.0, 1.0); 2];
-        let sites = Sites { points, domain: extent, extent, spacing: 1.0, cells: None, tiling: None };
+        let sites = Sites { points, domain: extent, extent, spacing: 1.0, cells: None, tiling: None, torus: None };
         let graph = Graph::new(2, &[], Vec::new());
         assert!((ring_area(&outline(&sites, &graph, 0.0, 0.0, 0)) - 4.0).abs() < 1e-12);
         assert!(outline(&sites, &graph, 0.0, 0.0, 1).is_empty());
@@ -203,7 +208,7 @@ mod tests {
     fn sites_on_the_border_have_whole_cells() {
         let extent = Rect::new(Point::default(), Point::new(1.0, 1.0));
         let points = vec![Point::new(0.0, 0.0), Point::new(1.0, 0.0)];
-        let sites = Sites { points, domain: extent, extent, spacing: 1.0, cells: None, tiling: None };
+        let sites = Sites { points, domain: extent, extent, spacing: 1.0, cells: None, tiling: None, torus: None };
         let graph = Graph::new(2, &[[0, 1]], Vec::new());
         let ring = outline(&sites, &graph, 0.0, 0.0, 0);
         assert!((ring_area(&ring) - 1.5).abs() < 1e-12);

@@ -10,6 +10,7 @@ use crate::span::Span;
 
 use super::budget::{Budget, Exceeded};
 use super::knockout::Stencil;
+use super::torus::{self, Unrolled};
 use super::{Stages, draw};
 
 /// Something that is drawn.
@@ -97,7 +98,10 @@ impl<'a> Assembly<'a> {
             Over::Print => {}
             Over::Knockout => {
                 let visible = cut::visible(paint, self.canvas);
-                let stencil = Stencil::new(paint, &visible, stages.sites, stages.tiles);
+                let reach = self.canvas.period().map(|period| torus::protrusion(&self.layers, period));
+                let unrolled = reach.and_then(|reach| Unrolled::new(stages, reach));
+                let Stages { sites, tiles, .. } = unrolled.as_ref().map_or(*stages, Unrolled::stages);
+                let stencil = Stencil::new(paint, &visible, sites, tiles);
                 Budget::new(self.limits)
                     .work(stencil.cost(&self.layers))
                     .map_err(|exceeded| exceeded.diagnostic(self.limits, paint.span))?;
@@ -121,24 +125,38 @@ impl<'a> Assembly<'a> {
         let polylines = rings.map(|ring| ring.iter().chain(ring.first()).copied().collect()).collect();
         let mut layer = Layer::new(setting.groups.clone(), "outline".to_owned(), setting.ink);
         layer.strokes.push(Strokes { polylines, ..Strokes::new(outline.pen, Cap::Butt) });
+        if let Some(period) = self.canvas.period() {
+            layer = torus::wrap(layer, period, self.limits.strokes)
+                .map_err(|exceeded| exceeded.diagnostic(self.limits, outline.span))?;
+        }
         self.add(vec![layer], outline.span)
     }
 
     /// Draws the strokes and fills of a file on top of what is there, as far as they lie on the canvas. A run of marks of
-    /// one colour is one layer; what is not opaque is one by itself, so that it shows what lies under it.
+    /// one colour is one layer; what is not opaque is one by itself, so that it shows what lies under it. On a canvas that
+    /// repeats what lies beyond its borders comes in at the opposite ones.
     ///
     /// # Errors
     /// If the drawing comes to have more marks than the limit allows.
     pub fn ink(&mut self, ink: &Ink, setting: &Setting) -> Result<(), Diagnostic> {
         let mut layers: Vec<Layer> = Vec::new();
+        let period = self.canvas.period();
+        let sheet = if period.is_some() { torus::EVERYWHERE } else { self.canvas.bounds() };
         for mark in &ink.marks {
             let mut layer = Layer::new(setting.groups.clone(), "ink".to_owned(), mark.colour);
-            put(mark, self.canvas.bounds(), &mut layer);
+            put(mark, sheet, &mut layer);
             match layers.last_mut() {
                 Some(last) if mark.colour.a == 255 && last.ink == mark.colour => join(last, layer),
                 _ if layer.marks() > 0 => layers.push(layer),
                 _ => {}
             }
+        }
+        if let Some(period) = period {
+            let wrapped = layers.into_iter().map(|layer| torus::wrap(layer, period, self.limits.strokes));
+            layers = wrapped
+                .collect::<Result<_, _>>()
+                .map_err(|exceeded: Exceeded| exceeded.diagnostic(self.limits, ink.span))?;
+            layers.retain(|layer| layer.marks() > 0);
         }
         self.add(layers, ink.span)
     }

@@ -14,13 +14,14 @@ use crate::scene::{Blend, Cap, Hatch};
 use super::budget::{BANK, CURVE, DRAWN, Exceeded, SAMPLE};
 use super::cutout::{Cutout, unite};
 use super::edge::Bank;
-use super::hand::{Pull, Wander};
+use super::hand::Pull;
 use super::job::{Job, Layer, Scratch as JobScratch};
 use super::lattice::{Lattice, is_drawn};
 use super::lines::spread;
 use super::palette::Batch;
 use super::run::Run;
 use super::stroke::CRUMB;
+use super::wander::Wander;
 
 /// Where a curve comes near the region's outline it is looked at in steps of this many millimetres: ink reaches over the
 /// outline by half of it at most, in notches that are narrower.

@@ -23,9 +23,9 @@ impl<'a> Dotting<'a> {
         Self { hatch, spacing, radius: radius.to_mm() }
     }
 
-    /// Places along lines at the exact spacing.
-    pub(super) fn along(&self, range: (f64, f64)) -> Lattice {
-        Lattice::cell(range, 0.0, self.spacing.to_mm())
+    /// Places along lines at the exact spacing, one of them, or one that would continue them, at `middle`.
+    pub(super) fn along(&self, range: (f64, f64), middle: f64) -> Lattice {
+        Lattice::cell(range, middle, self.spacing.to_mm())
     }
 }
 

@@ -30,7 +30,7 @@ impl Cost {
 
 /// Checks that a paint's tiles can be drawn within its budget.
 pub(super) fn check(job: &Job<'_>) -> Result<(), Exceeded> {
-    let tiles = (0..job.tiles.len()).into_par_iter().filter(|&tile| job.tiles.is_drawn(tile));
+    let tiles = (0..job.sites.own()).into_par_iter().filter(|&tile| job.tiles.is_drawn(tile));
     let cost = tiles.map(|tile| cost(job, tile)).reduce(Cost::default, Cost::plus);
     let (lines, dots) = (cost.lines * u128::from(LINE), cost.dots * u128::from(DOT));
     let curves = cost.curves * u128::from(CURVE);
@@ -92,7 +92,7 @@ fn cost(job: &Job<'_>, tile: usize) -> Cost {
 
 /// How deeply the drawn tiles overlap.
 fn overlap(job: &Job<'_>) -> Exceeded {
-    let drawn = || (0..job.tiles.len()).filter(|&tile| job.tiles.is_drawn(tile));
+    let drawn = || (0..job.sites.own()).filter(|&tile| job.tiles.is_drawn(tile));
     let count = drawn().count().max(1) as f64;
     let area = drawn().map(|tile| ring_area(job.tiles.outline(tile)).abs()).sum::<f64>() / count;
     let spacing = job.sites.spacing;

@@ -1,8 +1,9 @@
 //! What is drawn where no tile is, before the tiles.
 //!
 //! A fill of its own runs over the whole region, its lines at the exact pitch and measured from the middle of the page, and
-//! is left out under the tiles. `nearest` continues the pattern of every tile over its Voronoi cell, or of a tiling over
-//! the cell that the tile was drawn in from. Both end at the region's outline whatever the tiles do there.
+//! is left out under the tiles. Where the page repeats, lines take the direction and the pitch next to these that go round,
+//! and run on a little beyond the borders. `nearest` continues the pattern of every tile over its Voronoi cell, or of a
+//! tiling over the cell that the tile was drawn in from. Both end at the region's outline whatever the tiles do there.
 
 use rayon::prelude::*;
 
@@ -10,8 +11,9 @@ use crate::geom::bezier::cubics;
 use crate::geom::clip::{Frame, Profile, convex_clearance};
 use crate::geom::{Angle, Length, Point, Vec2, chain, ring_bounds};
 use crate::pass::cut::voronoi::Cells;
+use crate::pass::link;
 use crate::region::{FillRule, Region};
-use crate::scene::{Canvas, Fill, FillKind, Ground, Hatch, Paint, Shape};
+use crate::scene::{Canvas, Fill, FillKind, Ground, Hatch, Link, Paint, Shape};
 use crate::stage::{Graph, Sites, Tiling};
 
 use super::arcs::Arcs;
@@ -20,8 +22,8 @@ use super::crosses::{ARMS, Crossing, draw_arm};
 use super::curves::{Course, clip, disc, emit, trace};
 use super::dashes::Dashes;
 use super::dots::{Dot, Dotting, end_row};
-use super::edge::Contact;
-use super::hand::{Bundle, Line, Pull, Wander};
+use super::edge::{Bank, Contact};
+use super::hand::{Bundle, Pull};
 use super::job::{Job, Piece, Scratch};
 use super::lattice::Lattice;
 use super::motif::Motif;
@@ -29,7 +31,10 @@ use super::palette::Batch;
 use super::scribble::Scribble;
 use super::solid;
 use super::stroke::Stroke;
+use super::torus::overhang;
+use super::wander::{Line, Wander};
 use super::waves::Waves;
+use super::weave::{Along, Bond, Weave};
 
 /// Lines that one thread draws at a time; they also make a bundle.
 const BAND: usize = 64;
@@ -108,19 +113,98 @@ fn nearest(job: &Job<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
     })
 }
 
+/// The triangulation that bounds Voronoi cells, where the links of the tiles are others: cells that share edges are not all
+/// the neighbours.
+pub(super) fn delaunay(paint: &Paint, sites: &Sites) -> Option<Graph> {
+    match paint.tone.link {
+        Link::Delaunay => None,
+        Link::Edges => Some(link::link(&sites.without_images(), Link::Delaunay)),
+    }
+}
+
 /// Draws one fill over all that is left of the region.
 fn even(job: &Job<'_>, canvas: &Canvas, fill: &Fill, angle: Angle) -> Result<Vec<Vec<Batch>>, Exceeded> {
-    let frame = Frame::new(canvas.bounds().centre(), angle.unit());
+    let Some(period) = canvas.period() else { return even_over(job, canvas, fill, (angle.unit(), None)) };
+    let area = Region::rect(canvas.bounds().grown(beyond(fill)));
+    let region = job.bank.region().intersection(&area);
+    let bank = Bank::new(&region);
+    let job = Job { bank: &bank, ..*job };
+    let Some(hatch) = fill.kind.hatch() else { return even_over(&job, canvas, fill, (angle.unit(), None)) };
+    let weave = Weave::new(period, angle.unit(), hatch.pitch);
+    let mut fill = fill.clone();
+    match &mut fill.kind {
+        FillKind::Lines(hatch)
+        | FillKind::Dashes { hatch, .. }
+        | FillKind::Dots { hatch, .. }
+        | FillKind::Crosses { hatch, .. }
+        | FillKind::Motif { hatch, .. } => hatch.pitch = Length::mm(weave.pitch),
+        // Lowering lets none of the curves come here that do not go round.
+        FillKind::Arcs(_)
+        | FillKind::Waves { .. }
+        | FillKind::Nawaami { .. }
+        | FillKind::Scribble { .. }
+        | FillKind::Solid => {}
+    }
+    even_over(&job, canvas, &fill, (weave.along, Some(&weave)))
+}
+
+/// How far beyond the borders of a page that repeats a ground is drawn, in millimetres: so far that nothing on the page is
+/// left out because too little of it lies on this side.
+pub(super) fn beyond(fill: &Fill) -> f64 {
+    match &fill.kind {
+        FillKind::Lines(hatch) | FillKind::Dashes { hatch, .. } => overhang(hatch.pen) + hatch.shortest.to_mm(),
+        FillKind::Dots { radius, .. } => 2.0 * radius.to_mm(),
+        FillKind::Crosses { hatch, size, .. } => overhang(hatch.pen) + hatch.shortest.to_mm() + size.to_mm(),
+        FillKind::Motif { hatch, spacing, figure } => {
+            let reach = Motif { hatch, spacing: *spacing, figure }.reach();
+            overhang(hatch.pen) + hatch.shortest.to_mm() + reach * 2.0
+        }
+        FillKind::Arcs(hatch)
+        | FillKind::Waves { hatch, .. }
+        | FillKind::Nawaami { hatch, .. }
+        | FillKind::Scribble { hatch, .. } => overhang(hatch.pen) + hatch.shortest.to_mm(),
+        FillKind::Solid => BLEED,
+    }
+}
+
+/// How far beyond the borders of a page that repeats areas reach, in millimetres.
+const BLEED: f64 = 0.5;
+
+/// Draws one fill in a direction; on a page that repeats, as a weave has it.
+fn even_over(
+    job: &Job<'_>,
+    canvas: &Canvas,
+    fill: &Fill,
+    (direction, weave): (Vec2, Option<&Weave>),
+) -> Result<Vec<Vec<Batch>>, Exceeded> {
+    let frame = Frame::new(canvas.bounds().centre(), direction);
     let mut region = Profile::default();
     region.set(&job.bank.region().bounds().corners(), &frame);
-    let bundle = (!job.paint.tone.hand.is_ruled()).then(|| Bundle::ground(job.paint));
+    // A hand's unevenness does not go round, so that what goes round is ruled.
+    let is_ruled = job.paint.tone.hand.is_ruled() || weave.is_some();
+    let bundle = (!is_ruled).then(|| Bundle::ground(job.paint));
     let plane = Plane { job, frame, region, bundle };
+    let rows = |spacing: Length| match weave {
+        Some(weave) => weave.along(spacing, Bond::Rows),
+        None => Along { step: spacing.to_mm(), drift: 0.0 },
+    };
     match &fill.kind {
         FillKind::Lines(hatch) => plane.lines(hatch, None),
-        FillKind::Dashes { hatch, dash, gap } => plane.lines(hatch, Some(&Dashes::new(*dash, *gap))),
-        FillKind::Dots { hatch, spacing, radius } => plane.dots(&Dotting::new(hatch, *spacing, *radius)),
+        FillKind::Dashes { hatch, dash, gap } => {
+            let dashes = Dashes::new(*dash, *gap);
+            let dashes = match weave {
+                Some(weave) => dashes.woven(weave.along(*dash + *gap, Bond::Bricks)),
+                None => dashes,
+            };
+            plane.lines(hatch, Some(&dashes))
+        }
+        FillKind::Dots { hatch, spacing, radius } => {
+            let Along { step, drift } = rows(*spacing);
+            plane.dots(&Dotting::new(hatch, Length::mm(step), *radius), drift)
+        }
         FillKind::Crosses { hatch, spacing, size } => {
-            plane.crosses(&Crossing { hatch, spacing: *spacing, size: *size })
+            let Along { step, drift } = rows(*spacing);
+            plane.crosses(&Crossing { hatch, spacing: Length::mm(step), size: *size }, drift)
         }
         FillKind::Arcs(hatch) => plane.curves(hatch, &Arcs { centre: Point::default() }, plane.rings()),
         FillKind::Waves { hatch, swing } | FillKind::Nawaami { hatch, swing } => {
@@ -130,7 +214,10 @@ fn even(job: &Job<'_>, canvas: &Canvas, fill: &Fill, angle: Angle) -> Result<Vec
             let scribble = Scribble::new(job.paint, usize::MAX, 0, *loops, *spacing);
             plane.curves(hatch, &scribble, plane.region.across())
         }
-        FillKind::Motif { hatch, spacing, figure } => plane.motif(&Motif { hatch, spacing: *spacing, figure }),
+        FillKind::Motif { hatch, spacing, figure } => {
+            let Along { step, drift } = rows(*spacing);
+            plane.motif(&Motif { hatch, spacing: Length::mm(step), figure }, drift)
+        }
         FillKind::Solid => {
             let drawn = (0..job.tiles.len()).filter(|&tile| job.tiles.is_drawn(tile));
             let outlines = drawn.map(|tile| job.tiles.outline(tile).to_vec()).collect();
@@ -217,8 +304,10 @@ impl Plane<'_> {
         })
     }
 
-    fn dots(&self, dotting: &Dotting<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
-        let row = dotting.along(self.region.along());
+    /// Dots that lie further back by `drift` on every line a millimetre across.
+    fn dots(&self, dotting: &Dotting<'_>, drift: f64) -> Result<Vec<Vec<Batch>>, Exceeded> {
+        let along = self.region.along();
+        let row = dotting.along(along, 0.0);
         let count = row.count() * Lattice::cell(self.region.across(), 0.0, dotting.hatch.pitch.to_mm()).count();
         if count * (DOT + BANK) as f64 > self.job.budget.most_work() as f64 {
             return Err(Exceeded::Places { what: "dots of ground", count: count as u64 });
@@ -227,7 +316,7 @@ impl Plane<'_> {
             for &(number, v) in band {
                 self.job.budget.work(row.count() * (DOT + BANK) as f64)?;
                 let starts: Vec<usize> = out.iter().map(|batch| batch.dots.len()).collect();
-                for (mark, u) in row.places() {
+                for (mark, u) in dotting.along(along, -v * drift).places() {
                     let dot = Dot::new(self.bundle.as_ref(), dotting, (number, mark), u, row.step());
                     let centre = self.frame.page(dot.u, v);
                     if self.is_free(centre, dot.radius, scratch)? {
@@ -267,12 +356,14 @@ impl Plane<'_> {
         })
     }
 
-    fn motif(&self, motif: &Motif<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
+    /// Figures that lie further back by `drift` on every line a millimetre across.
+    fn motif(&self, motif: &Motif<'_>, drift: f64) -> Result<Vec<Vec<Batch>>, Exceeded> {
         let (reach, cost) = (motif.reach(), motif.cost());
         let grown = |(low, high): (f64, f64)| (low - reach, high + reach);
-        let row = Lattice::cell(grown(self.region.along()), 0.0, motif.spacing.to_mm());
+        let row = |middle: f64| Lattice::cell(grown(self.region.along()), middle, motif.spacing.to_mm());
         self.in_bands(motif.hatch.pitch, grown(self.region.across()), |scratch, band, out| {
             for &(number, v) in band {
+                let row = row(-v * drift);
                 self.job.budget.work(row.count() * (cost + BANK) as f64)?;
                 for (mark, u) in row.places() {
                     let pull = Pull::mark(self.bundle.as_ref(), motif.hatch, number, mark);
@@ -319,10 +410,12 @@ impl Plane<'_> {
         Ok(())
     }
 
-    fn crosses(&self, crossing: &Crossing<'_>) -> Result<Vec<Vec<Batch>>, Exceeded> {
-        let row = Lattice::cell(self.region.along(), 0.0, crossing.spacing.to_mm());
+    /// Crosses that lie further back by `drift` on every line a millimetre across.
+    fn crosses(&self, crossing: &Crossing<'_>, drift: f64) -> Result<Vec<Vec<Batch>>, Exceeded> {
+        let row = |middle: f64| Lattice::cell(self.region.along(), middle, crossing.spacing.to_mm());
         self.in_bands(crossing.hatch.pitch, self.region.across(), |scratch, band, out| {
             for &(number, v) in band {
+                let row = row(-v * drift);
                 self.job.budget.work(row.count() * (DOT + BANK) as f64)?;
                 let starts: Vec<usize> = out.iter().map(|batch| batch.lines.len()).collect();
                 for (mark, u) in row.places() {

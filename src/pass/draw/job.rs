@@ -22,7 +22,9 @@ use super::{arcs, crosses, curves, dashes, dots, lines, motif, nawaami, scribble
 /// Tiles that one thread draws at a time.
 const CHUNK: usize = 256;
 
-/// A paint that is being drawn.
+/// A paint that is being drawn. On a page that repeats its tiles are followed by images of those near the borders, which
+/// hide what lies under them; only tiles that are no images are drawn.
+#[derive(Clone, Copy)]
 pub(super) struct Job<'a> {
     pub(super) paint: &'a Paint,
     pub(super) sites: &'a Sites,
@@ -106,11 +108,12 @@ impl Job<'_> {
         &self,
         draw: impl Fn(&mut Scratch, usize, &mut [Batch]) -> Result<(), Exceeded> + Sync,
     ) -> Result<Vec<Vec<Batch>>, Exceeded> {
-        (0..self.tiles.len().div_ceil(CHUNK))
+        let own = self.sites.own();
+        (0..own.div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
                 let (mut scratch, mut batches) = (Scratch::default(), self.palette.batches());
-                for tile in chunk * CHUNK..((chunk + 1) * CHUNK).min(self.tiles.len()) {
+                for tile in chunk * CHUNK..((chunk + 1) * CHUNK).min(own) {
                     let before: usize = batches.iter().map(Batch::len).sum();
                     draw(&mut scratch, tile, &mut batches)?;
                     batches.iter_mut().for_each(Batch::end_bundle);
@@ -152,7 +155,7 @@ impl Job<'_> {
             let radius = self.nearby.radius(tile) + (hand.overshoot + hand.wobble).to_mm();
             self.budget.look(&mut scratch.looks, self.nearby.candidates(self.sites.points[tile], radius))?;
             self.nearby.near(self.sites.points[tile], radius, |other| {
-                if other as usize > tile {
+                if self.sites.original(other as usize) > tile {
                     scratch.covers.push(other);
                 }
             });

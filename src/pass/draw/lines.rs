@@ -10,12 +10,12 @@ use crate::scene::{Blend, Hatch};
 
 use super::budget::{BANK, Exceeded, LINE, PROFILE, SAMPLE};
 use super::dashes::Dashes;
-use super::hand::Line;
 use super::job::{Job, Layer, Scratch};
 use super::lattice::{Lattice, is_drawn};
 use super::palette::Batch;
 use super::silhouette::Silhouette;
 use super::stroke::Stroke;
+use super::wander::Line;
 
 /// Halvings in the search for the place where a layer ends along the field: from a tenth of a millimetre to a millionth.
 const HALVINGS: usize = 24;

@@ -30,7 +30,11 @@ mod scribble;
 pub(in crate::pass) mod silhouette;
 mod solid;
 mod stroke;
+mod taper;
+mod torus;
+mod wander;
 mod waves;
+mod weave;
 
 #[cfg(test)]
 mod tests;
@@ -41,8 +45,7 @@ pub use nawaami::tangents;
 use crate::diag::Diagnostic;
 use crate::drawing::Layer;
 use crate::pass::cut::visible;
-use crate::pass::link;
-use crate::scene::{Canvas, Ground, Limits, Link, Paint};
+use crate::scene::{Canvas, Ground, Limits, Paint};
 use crate::stage::{Angles, Graph, Sites, Tiles};
 
 use budget::{Budget, Exceeded};
@@ -50,7 +53,8 @@ use edge::Bank;
 use ground::Around;
 use job::Job;
 use nearby::Nearby;
-use palette::{Batch, Palette};
+use palette::Palette;
+use torus::Unrolled;
 
 /// What the earlier passes found for one paint.
 #[derive(Debug, Clone, Copy)]
@@ -77,15 +81,12 @@ pub fn draw(
     limits: &Limits,
 ) -> Result<Vec<Layer>, Diagnostic> {
     let visible = visible(paint, canvas);
-    let &Stages { sites, graph, angles, tiles } = stages;
+    let unrolled = stages.sites.torus.as_ref().and_then(|_| Unrolled::new(stages, torus::reach(paint, stages)));
+    let &Stages { sites, graph, angles, tiles } = &unrolled.as_ref().map_or(*stages, Unrolled::stages);
     let (bank, nearby) = (Bank::new(&visible), Nearby::new(sites, tiles));
     let (palette, budget) = (Palette::new(paint, setting.ink), Budget::new(limits));
     let is_continued = paint.tone.ground == Some(Ground::Nearest);
-    // Cells that share edges are not all the neighbours that bound a Voronoi cell.
-    let delaunay = match paint.tone.link {
-        Link::Delaunay => None,
-        Link::Edges => is_continued.then(|| link::link(sites, Link::Delaunay)),
-    };
+    let delaunay = if is_continued { ground::delaunay(paint, sites) } else { None };
     let around = is_continued.then(|| Around::new(paint, sites, delaunay.as_ref().unwrap_or(graph)));
     let job = Job {
         paint,
@@ -98,17 +99,27 @@ pub fn draw(
         budget: &budget,
         around: around.as_ref(),
     };
-    let chunks = chunks(&job, canvas).map_err(|exceeded| match exceeded {
+    layers(&job, canvas, setting).map_err(|exceeded| match exceeded {
         Exceeded::Overlap { .. } => exceeded.diagnostic(limits, paint.tone.place_span).note(paint.span, "painted here"),
         _ => exceeded.diagnostic(limits, paint.span),
-    })?;
-    Ok(palette.layers(&paint.name, &setting.groups, chunks))
+    })
 }
 
 /// The ground and then the tiles.
-fn chunks(job: &Job<'_>, canvas: &Canvas) -> Result<Vec<Vec<Batch>>, Exceeded> {
+fn layers(job: &Job<'_>, canvas: &Canvas, setting: &Setting) -> Result<Vec<Layer>, Exceeded> {
     forecast::check(job)?;
-    let mut chunks = ground::draw(job, canvas)?;
-    chunks.extend(job.in_chunks(|scratch, tile, out| job.draw_tile(scratch, tile, out))?);
-    Ok(chunks)
+    let ground = ground::draw(job, canvas)?;
+    let tiles = job.in_chunks(|scratch, tile, out| job.draw_tile(scratch, tile, out))?;
+    let layers = |chunks| job.palette.layers(&job.paint.name, &setting.groups, chunks);
+    let Some(period) = canvas.period() else { return Ok(layers(ground.into_iter().chain(tiles).collect())) };
+    // A ground of its own is drawn beyond the borders already; what belongs to tiles is drawn once.
+    let (mut done, once) = match &job.paint.tone.ground {
+        Some(Ground::Fill { .. }) => (layers(ground), tiles),
+        Some(Ground::Nearest) | None => (Vec::new(), ground.into_iter().chain(tiles).collect()),
+    };
+    for layer in layers(once) {
+        done.push(torus::wrap(layer, period, job.budget.limit() as u64)?);
+    }
+    done.retain(|layer| layer.marks() > 0);
+    Ok(done)
 }

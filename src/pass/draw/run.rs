@@ -2,7 +2,8 @@
 
 use crate::geom::{Point, chain};
 
-use super::hand::{Pull, RunOut};
+use super::hand::Pull;
+use super::taper::RunOut;
 
 /// Memory that is used again for every stroke: places along a chain, and how long the way to them is.
 #[derive(Default)]

@@ -7,9 +7,10 @@ use crate::scene::Hatch;
 use super::budget::Exceeded;
 use super::dashes::Dashes;
 use super::edge::Nib;
-use super::hand::{Bundle, Line, Pull};
+use super::hand::{Bundle, Pull};
 use super::job::{self, Job};
 use super::palette::Batch;
+use super::wander::Line;
 
 /// Pieces of no more than this many millimetres are rounding, however short strokes may be.
 pub(super) const CRUMB: f64 = 1e-6;
@@ -58,7 +59,7 @@ impl Stroke {
             scratch.others.clear();
             for &range in scratch.ranges.as_slice() {
                 job.budget.work(dashes.count(range))?;
-                dashes.cut(range, self.line.number, &mut scratch.others);
+                dashes.cut(range, (self.line.number, self.line.v), &mut scratch.others);
             }
             scratch.ranges.intersect(&scratch.others);
             // Dashes that are meant to be short are not too short.
@@ -73,7 +74,7 @@ impl Stroke {
                 let middle = (from + to) / 2.0;
                 // Every dash is a stroke of its own.
                 let whole = match dashes {
-                    Some(dashes) => Some(dashes.around(middle, self.line.number)),
+                    Some(dashes) => Some(dashes.around(middle, (self.line.number, self.line.v))),
                     None => scratch.wholes.iter().copied().find(|whole| middle < whole.1),
                 };
                 self.piece(whole, (from, to), &mut scratch.stroke, out);

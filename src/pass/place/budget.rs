@@ -14,6 +14,7 @@ const CELLS_A_TILE: f64 = 32.0;
 const MOVES_A_TILE: f64 = 32.0;
 
 /// The limit of tiles.
+#[derive(Clone, Copy)]
 pub(super) struct Budget {
     tiles: u64,
     span: Span,
@@ -54,7 +55,7 @@ impl Budget {
         let (moves, most, limit) = (grouped(rounded(moves)), grouped(most), grouped(self.tiles as f64));
         let call = describe(placement);
         let message = format!("`{call}` would move tiles {moves} times; a limit of {limit} tiles allows {most}");
-        Err(self.exceeded(placement, message))
+        Err(self.exceeded(placement, message).label("too many rounds"))
     }
 
     /// A search grid of `columns * rows` empty cells.

@@ -4,6 +4,7 @@
 //! estimated before anything is allocated, so that a slip in a radius ends in a diagnostic and not in all the memory.
 //! A placement is one file here and one line in `find`.
 
+mod around;
 mod budget;
 mod grid;
 mod hex;
@@ -17,10 +18,10 @@ mod triangles;
 mod uniform;
 
 use crate::diag::Diagnostic;
-use crate::geom::{Point, Rect};
+use crate::geom::{Period, Point, Rect};
 use crate::random::{Key, Stream};
 use crate::scene::{Amount, Canvas, Domain, GridSize, Limits, Link, Paint, Placement, Shape};
-use crate::stage::Sites;
+use crate::stage::{Sites, Torus};
 use budget::Budget;
 
 /// Finds the sites of a paint. There may be none, for instance where the domain is empty.
@@ -32,20 +33,30 @@ pub fn place(paint: &Paint, canvas: &Canvas, limits: &Limits) -> Result<Sites, D
     let domain = if is_counted(&tone.place) {
         paint.region.bounds()
     } else {
-        match tone.domain {
-            Domain::Canvas => canvas.bounds(),
-            Domain::Region => paint.region.bounds(),
+        match (tone.domain, canvas.period()) {
+            // A lattice or a distance that ended at the region's box would not go on beyond the border.
+            (Domain::Canvas, _) | (Domain::Region, Some(_)) => canvas.bounds(),
+            (Domain::Region, None) => paint.region.bounds(),
         }
     };
+    // What counts its tiles in a smaller box than the page goes round nothing.
+    let torus = canvas.period().filter(|_| domain == canvas.bounds());
     let ground = Ground {
         domain: if domain.is_empty() { Rect::new(Point::default(), Point::default()) } else { domain },
-        bleed: tone.bleed.map(|bleed| bleed.to_mm()),
+        // A torus has no edges that should be full.
+        bleed: if torus.is_some() { Some(0.0) } else { tone.bleed.map(|bleed| bleed.to_mm()) },
         seed: paint.seed,
         name: &paint.name,
         wants_cells: tone.link == Link::Edges || matches!(tone.shape, Shape::Cell { .. }),
         budget: Budget::new(limits.tiles, tone.place_span),
+        torus,
     };
-    find(&tone.place, &ground)
+    let mut sites = find(&tone.place, &ground)?;
+    if let Some(period) = canvas.period() {
+        sites.points.iter_mut().for_each(|site| *site = period.wrapped(*site));
+        sites.torus = Some(Torus { period, images: Vec::new() });
+    }
+    Ok(sites)
 }
 
 /// Whether a placement has so many tiles in its domain, which is then the region's box and has no bleed of its own.
@@ -69,6 +80,9 @@ fn is_counted(placement: &Placement) -> bool {
 fn find(placement: &Placement, ground: &Ground<'_>) -> Result<Sites, Diagnostic> {
     if ground.domain.is_empty() && !matches!(placement, Placement::Points(_)) {
         return Ok(ground.sites(Vec::new(), FALLBACK_SPACING, 0.0));
+    }
+    if let Some(round) = ground.torus.and_then(|period| around::Round::of(placement, period)) {
+        return round.place(placement, ground, |even| find(placement, even));
     }
     match placement {
         Placement::Poisson { radius, tries, density } => {
@@ -106,6 +120,8 @@ struct Ground<'a> {
     /// Whether the cells of tilings and their shared edges are asked for, not only their sites.
     wants_cells: bool,
     budget: Budget,
+    /// The period, where the domain goes on beyond its borders.
+    torus: Option<Period>,
 }
 
 impl Ground<'_> {
@@ -128,7 +144,15 @@ impl Ground<'_> {
 
     /// Sites without cells.
     fn sites(&self, points: Vec<Point>, spacing: f64, default_bleed: f64) -> Sites {
-        Sites { points, domain: self.domain, extent: self.extent(default_bleed), spacing, cells: None, tiling: None }
+        Sites {
+            points,
+            domain: self.domain,
+            extent: self.extent(default_bleed),
+            spacing,
+            cells: None,
+            tiling: None,
+            torus: None,
+        }
     }
 }
 

@@ -10,10 +10,12 @@
 //! from one seed may not reach an island beyond a stretch of white: after it has run dry, one point in every empty cell of
 //! the grid, row by row, is offered as a further seed. The same is done in a strip so narrow that a site's candidates
 //! mostly miss it. Elsewhere it is left out, for it would pack the sites closer than Bridson's algorithm does.
+//!
+//! On a torus candidates beyond a border come in at the opposite one, and distances are taken the shortest way round.
 
 use crate::diag::Diagnostic;
 use crate::field::Field;
-use crate::geom::{Point, Rect, Vec2};
+use crate::geom::{Period, Point, Rect, Vec2};
 use crate::random::Stream;
 use crate::scene::Placement;
 use crate::stage::Sites;
@@ -156,6 +158,10 @@ impl Growth<'_> {
 
     /// Takes a candidate as a site if it lies in the extent and keeps its distance from all others.
     fn offer(&mut self, candidate: Point) -> Result<bool, Diagnostic> {
+        let candidate = match self.grid.torus {
+            Some(period) => period.wrapped(candidate),
+            None => candidate,
+        };
         if !self.extent.contains(candidate) {
             return Ok(false);
         }
@@ -199,10 +205,13 @@ const EMPTY: u32 = u32::MAX;
 /// Empty cells round the grid, so that the cells near a site can be looked at without minding the border.
 const BORDER: usize = 3;
 
-/// A grid of cells of side r / sqrt(2), each of which holds at most one site.
+/// A grid of cells of side r / sqrt(2), each of which holds at most one site. On a torus they are a little smaller, so
+/// that a whole number of them goes round.
 struct Grid {
     min: Point,
-    side: f64,
+    /// Width and height of a cell.
+    side: [f64; 2],
+    torus: Option<Period>,
     columns: usize,
     rows: usize,
     /// Indices of sites, row by row, the border included.
@@ -214,9 +223,16 @@ struct Grid {
 impl Grid {
     fn new(placement: &Placement, ground: &Ground<'_>, extent: &Rect, radius: f64) -> Result<Self, Diagnostic> {
         let side = radius * std::f64::consts::FRAC_1_SQRT_2;
-        // A column more than the width needs, since a quotient may round up to a whole number.
-        let columns = (extent.width() / side).floor() + 1.0;
-        let rows = (extent.height() / side).floor() + 1.0;
+        let count = |length: f64| match ground.torus {
+            Some(_) => (length / side).ceil().max(1.0),
+            // A column more than the width needs, since a quotient may round up to a whole number.
+            None => (length / side).floor() + 1.0,
+        };
+        let (columns, rows) = (count(extent.width()), count(extent.height()));
+        let sides = match ground.torus {
+            Some(_) => [extent.width() / columns, extent.height() / rows],
+            None => [side; 2],
+        };
         let border = 2.0 * BORDER as f64;
         let cells = ground.budget.grid(placement, columns + border, rows + border)?;
         let (columns, rows) = (columns as usize, rows as usize);
@@ -226,7 +242,7 @@ impl Grid {
             .flat_map(|row| (-reach..=reach).map(move |column| row * stride + column))
             .filter(|&way| way != 0)
             .collect();
-        Ok(Self { min: extent.min, side, columns, rows, cells, around })
+        Ok(Self { min: extent.min, side: sides, torus: ground.torus, columns, rows, cells, around })
     }
 
     fn stride(&self) -> usize {
@@ -241,7 +257,7 @@ impl Grid {
     fn column_and_row(&self, p: Point) -> (usize, usize) {
         let way = p - self.min;
         // A conversion from a float stops at 0 on its own.
-        (((way.x / self.side) as usize).min(self.columns - 1), ((way.y / self.side) as usize).min(self.rows - 1))
+        (((way.x / self.side[0]) as usize).min(self.columns - 1), ((way.y / self.side[1]) as usize).min(self.rows - 1))
     }
 
     fn cell_of(&self, p: Point) -> usize {
@@ -251,22 +267,49 @@ impl Grid {
 
     /// The area of a cell.
     fn cell(&self, column: usize, row: usize) -> Rect {
-        let min = self.min + Vec2::new(column as f64, row as f64) * self.side;
-        Rect::new(min, min + Vec2::new(self.side, self.side))
+        let [width, height] = self.side;
+        let min = self.min + Vec2::new(column as f64 * width, row as f64 * height);
+        Rect::new(min, min + Vec2::new(width, height))
     }
 
     /// Whether a site is closer to `p` than `radius`.
     fn has_closer(&self, points: &[Point], p: Point, radius: f64) -> bool {
         let (column, row) = self.column_and_row(p);
-        let reach = (radius / self.side) as usize + 1;
+        let reach = (radius / self.side[0].min(self.side[1])) as usize + 1;
+        let limit = radius * radius;
+        if let Some(period) = self.torus
+            && self.is_near_border(column, row, reach)
+        {
+            return self.round(column, row, reach).any(|site| {
+                let way = period.shortest(points[site as usize] - p);
+                way.length_squared() < limit
+            });
+        }
         let columns = column.saturating_sub(reach)..(column + reach + 1).min(self.columns);
         let rows = row.saturating_sub(reach)..(row + reach + 1).min(self.rows);
-        let limit = radius * radius;
         rows.into_iter().any(|row| {
             self.cells[self.index(columns.start, row)..self.index(columns.end, row)]
                 .iter()
                 .any(|&site| site != EMPTY && points[site as usize].distance_squared(p) < limit)
         })
+    }
+}
+
+impl Grid {
+    /// Whether cells within a reach of one lie beyond a border.
+    fn is_near_border(&self, column: usize, row: usize, reach: usize) -> bool {
+        column < reach || row < reach || column + reach >= self.columns || row + reach >= self.rows
+    }
+
+    /// The sites in the cells within a reach of one, round the torus; none of them twice.
+    fn round(&self, column: usize, row: usize, reach: usize) -> impl Iterator<Item = u32> + '_ {
+        let numbers = move |at: usize, count: usize| {
+            let first = (at + count - reach.min(count) % count) % count;
+            (0..(2 * reach + 1).min(count)).map(move |i| (first + i) % count)
+        };
+        let rows = numbers(row, self.rows);
+        let cells = rows.flat_map(move |row| numbers(column, self.columns).map(move |column| self.index(column, row)));
+        cells.map(|cell| self.cells[cell]).filter(|&site| site != EMPTY)
     }
 }
 
@@ -293,6 +336,13 @@ impl Near {
     }
 
     fn gather(&mut self, grid: &Grid, points: &[Point], origin: Point) {
+        if let Some(period) = grid.torus {
+            let (column, row) = grid.column_and_row(origin);
+            if grid.is_near_border(column, row, BORDER) {
+                self.gather_round(grid, period, points, origin);
+                return;
+            }
+        }
         let centre = grid.cell_of(origin);
         let mut sites = [EMPTY; AROUND];
         let mut count = 0;
@@ -307,6 +357,27 @@ impl Near {
             self.x[i] = way.x as f32;
             self.y[i] = way.y as f32;
         }
+        self.fill_up(count);
+    }
+
+    /// The same across the borders of a torus.
+    fn gather_round(&mut self, grid: &Grid, period: Period, points: &[Point], origin: Point) {
+        let (column, row) = grid.column_and_row(origin);
+        let mut count = 0;
+        for site in grid.round(column, row, BORDER) {
+            let way = period.shortest(points[site as usize] - origin);
+            // The site itself stands in nobody's way.
+            if way.length_squared() > 0.0 {
+                self.x[count] = way.x as f32;
+                self.y[count] = way.y as f32;
+                count += 1;
+            }
+        }
+        self.fill_up(count);
+    }
+
+    /// Fills the last lanes with what is far away.
+    fn fill_up(&mut self, count: usize) {
         self.count = count.next_multiple_of(LANES);
         self.x[count..self.count].fill(f32::INFINITY);
         self.y[count..self.count].fill(f32::INFINITY);

@@ -5,10 +5,10 @@ use rayon::prelude::*;
 
 use crate::diag::Diagnostic;
 use crate::geom::{Length, Point, Rect, ring_area};
-use crate::pass::cut::voronoi::Cells;
+use crate::pass::cut::voronoi::{self, Cells};
 use crate::pass::link;
 use crate::scene::{Link, Placement};
-use crate::stage::Sites;
+use crate::stage::{Sites, Torus};
 
 use super::{Ground, find};
 
@@ -27,7 +27,15 @@ pub(super) fn place(
     ground.budget.expect_moves(placement, sites.points.len(), rounds)?;
     let domain = sites.domain;
     let is_within = sites.points.iter().all(|&p| domain.including(p) == domain);
-    let bounds = if is_within && !domain.is_empty() { domain } else { reach(&sites) };
+    // On a torus sites go round, and cells end nowhere.
+    let wrapped = |p: Point| ground.torus.map_or(p, |period| period.wrapped(p));
+    sites.points.iter_mut().for_each(|p| *p = wrapped(*p));
+    sites.torus = ground.torus.map(|period| Torus { period, images: Vec::new() });
+    let bounds = match ground.torus {
+        Some(_) => voronoi::bounds(&sites),
+        None if is_within && !domain.is_empty() => domain,
+        None => reach(&sites),
+    };
     // Rows and columns are no longer.
     sites.cells = None;
     sites.tiling = None;
@@ -41,7 +49,7 @@ pub(super) fn place(
                 (chunk * CHUNK..((chunk + 1) * CHUNK).min(sites.points.len()))
                     .map(|site| {
                         cells.outline(site, &mut ring, &mut spare);
-                        middle(&ring).unwrap_or(sites.points[site])
+                        middle(&ring).map_or(sites.points[site], wrapped)
                     })
                     .collect()
             })
