@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::support::here;
 
 /// What each part may know of.
-const ARROWS: [(&str, &[&str]); 15] = [
+const ARROWS: [(&str, &[&str]); 16] = [
     ("span", &[]),
     ("geom", &[]),
     ("random", &[]),
@@ -22,6 +22,10 @@ const ARROWS: [(&str, &[&str]); 15] = [
     ("pass", &["scene", "stage", "geom", "region", "field", "random", "diag", "span", "drawing"]),
     ("back", &["drawing", "geom", "scene"]),
     ("lower", &["syntax", "scene", "region", "field", "loader", "diag", "span", "geom", "random"]),
+    (
+        "wedge",
+        &["back", "diag", "drawing", "field", "geom", "loader", "lower", "pass", "region", "scene", "span", "syntax"],
+    ),
     (
         "cli",
         &[
@@ -112,9 +116,14 @@ fn every_part_knows_only_what_it_may() {
         for path in files.iter().filter(|path| !is_test(path)) {
             for name in named(&code(path)) {
                 let is_part = name.chars().next().is_some_and(char::is_lowercase);
-                // What stands in lib.rs itself is the pipeline, which only the command line drives.
-                let fits = if is_part { name == **part || allowed.contains(&name.as_str()) } else { *part == "cli" };
-                let pipeline = *part == "cli" && matches!(name.as_str(), "compile" | "paints" | "no_such_paint");
+                // What stands in lib.rs itself is the pipeline, which only the command line and wedges drive.
+                let fits = if is_part {
+                    name == **part || allowed.contains(&name.as_str())
+                } else {
+                    matches!(*part, "cli" | "wedge")
+                };
+                let pipeline =
+                    matches!(*part, "cli" | "wedge") && matches!(name.as_str(), "compile" | "paints" | "no_such_paint");
                 if !fits && !pipeline {
                     wrong.push(format!("{} names crate::{name}", path.display()));
                 }

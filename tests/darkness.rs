@@ -116,23 +116,23 @@ fn every_kind_of_tone_prints_what_it_reckons() {
         let clipped =
             wedge.steps.iter().map(|step| (step.measured - step.asked.min(greatest)).abs()).sum::<f64>() / 9.0;
         assert!(clipped <= 0.03, "{name}: {:?}", wedge.steps);
-        let rising = wedge.steps.windows(2).all(|pair| pair[1].measured >= pair[0].measured - 0.005);
+        let rising = wedge.steps.windows(2).all(|pair| pair[1].measured >= pair[0].measured - 0.015);
         assert!(rising, "{name}: {:?}", wedge.steps);
     }
 }
 
 #[test]
 fn layers_have_wedges_too() {
-    let wedge = wedge_of("place: grid(spacing: 2mm) fill: lines(pitch: 0.5mm, pen: 0.1mm) k: d", 5);
+    let wedge = wedge_of("place: grid(spacing: 2mm) shape: cell() fill: lines(pitch: 0.4mm, pen: 0.1mm) k: d", 5);
     assert_eq!(wedge.asks, Asks::K);
-    // Each layer leaves four fifths of the paper bare.
+    // Each layer leaves three quarters of the paper bare.
     for (layers, step) in wedge.steps.iter().enumerate() {
-        let wanted = 1.0 - 0.8f64.powi(layers as i32);
+        let wanted = 1.0 - 0.75f64.powi(layers as i32);
         assert!((step.asked - layers as f64).abs() < 1e-9);
-        assert!((step.measured - wanted).abs() < 0.03 && (step.reckoned - wanted).abs() < 0.01, "{step:?}");
+        assert!((step.measured - wanted).abs() < 0.03 && (step.reckoned - wanted).abs() < 0.03, "{step:?}");
     }
     let names: Vec<&str> = wedge.drawing.layers.iter().map(|layer| layer.groups[0].as_str()).collect();
-    assert!(names[0].starts_with("k 1.000, prints 0.1") || names[0].starts_with("k 1.000, prints 0.2"), "{names:?}");
+    assert!(names[0].starts_with("k 1.000, prints 0.2"), "{names:?}");
 }
 
 /// Ink that spreads is reckoned with, not drawn: what is drawn is lighter by as much as it spreads.
