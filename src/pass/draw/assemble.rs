@@ -195,9 +195,8 @@ fn put(mark: &InkMark, sheet: Rect, layer: &mut Layer) {
             // An area that crosses the border too often to be cut lies beyond it as it is.
             let cut =
                 if is_whole { None } else { area.try_combined(&Region::rect(sheet), Operation::Intersection).ok() };
-            let rings =
-                |area: &Region| area.polygons().iter().map(|polygon| polygon.rings().cloned().collect()).collect();
-            layer.areas = rings(cut.as_ref().unwrap_or(area));
+            let polygons = cut.as_ref().unwrap_or(area).polygons();
+            layer.areas = polygons.iter().map(|polygon| polygon.rings().cloned().collect()).collect();
         }
         InkShape::Strokes { pen, cap, chains } => {
             // Cut beyond the border, where no end of a stroke is seen.
