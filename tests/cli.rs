@@ -337,13 +337,13 @@ fn a_picture_keeps_its_standard_library() {
 #[test]
 fn a_plot_says_what_the_pen_does() {
     let desk = Desk::new();
-    let ran = desk.kake(&["build", "scene.kake", "--plot", "-o", "plot.svg"]);
+    let ran = desk.kake(&["build", "scene.kake", "--set", "pen=0.3mm", "--plot", "-o", "plot.svg"]);
     assert_eq!((ran.status(), ran.out().as_str()), (0, ""));
     let said = ran.err();
-    assert!(said.contains("1 black 0.2mm") && said.contains("2 black") && said.contains("all "), "{said}");
+    assert!(said.contains("1 black 0.3mm") && said.contains("2 black") && said.contains("all "), "{said}");
     assert!(said.contains("lifts") && said.contains("down") && said.contains("up"), "{said}");
     let plot = String::from_utf8(desk.get("plot.svg")).expect("it is text");
-    assert!(plot.contains("inkscape:label=\"1 black 0.2mm\"") && !plot.contains("<rect"));
+    assert!(plot.contains("inkscape:label=\"1 black 0.3mm\"") && !plot.contains("<rect"));
     // What is built from a plot is one.
     assert_eq!(desk.kake(&["build", "plot.svg", "-o", "again.svg"]).status(), 0);
     assert!(desk.get("again.svg") == desk.get("plot.svg"));
