@@ -123,6 +123,25 @@ fn values_that_grow_without_bounds_are_refused() {
     assert!(errors(&compiled).iter().all(|(code, place)| *code == Code::Limit && *place), "{:?}", errors(&compiled));
 }
 
+/// Each blurred image takes memory of its own, so all of them together are counted.
+#[test]
+fn images_are_not_blurred_without_end() {
+    let text = "canvas { size: (20mm, 20mm) }
+tone t(k: field) { place: grid(spacing: 5mm) fill: lines(pitch: 1mm) k: k }
+for i in 1 .. 200 {
+  paint canvas with t(image(\"tiny.png\", fit: canvas, blur: 5mm + i * 0.05mm)) as \"blurred {i}\"
+}
+";
+    let mut loader = MemoryLoader::default();
+    loader.files.insert("scene.kake".to_owned(), text.as_bytes().into());
+    let tiny = fs::read(here("tests/cases/data/tiny.png")).expect("it can be read");
+    loader.files.insert("tiny.png".to_owned(), tiny.into());
+    let mut config = Config::default();
+    config.lower.limits.megapixels = 1;
+    let compiled = compile("scene.kake", &loader, &config, &mut ());
+    assert_eq!(errors(&compiled), [(Code::Limit, true)]);
+}
+
 #[test]
 fn too_many_tiles_and_strokes_are_refused_before_they_are_made() {
     let head = "canvas { size: a4 }\n";

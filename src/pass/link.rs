@@ -7,6 +7,8 @@ mod torus;
 
 use std::cmp::Ordering;
 
+use std::borrow::Cow;
+
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 use crate::geom::{Point, Rect, Vec2};
@@ -22,6 +24,14 @@ pub fn link(sites: &Sites, link: Link) -> Graph {
             None => delaunay(&sites.points, Ord::cmp),
         },
         Link::Edges => shared_edges(sites),
+    }
+}
+
+/// The Delaunay links of sites that `graph` links by another rule: those bound Voronoi cells, whatever makes neighbours.
+pub(super) fn delaunay_links<'a>(sites: &Sites, graph: &'a Graph, rule: Link) -> Cow<'a, Graph> {
+    match rule {
+        Link::Delaunay => Cow::Borrowed(graph),
+        Link::Edges => Cow::Owned(link(sites, Link::Delaunay)),
     }
 }
 

@@ -154,7 +154,7 @@ impl Lines {
             return Err(FloodError::OnLine);
         }
         let walls: Vec<Vec<Point>> = network
-            .pieces
+            .strokes()
             .iter()
             .filter_map(|piece| wall(piece.a, piece.b))
             .chain(self.dark.polygons().iter().flat_map(Polygon::rings).cloned())

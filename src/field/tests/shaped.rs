@@ -45,8 +45,9 @@ fn blurring_keeps_what_is_even_and_spreads_a_dot_as_a_gaussian_does() {
         let spread = dot.blurred(deviation);
         let (mut mass, mut variance) = (0.0, 0.0);
         for (i, &sample) in spread.samples.iter().enumerate() {
+            let x = i as f64 % 81.0 - 40.0;
             mass += f64::from(sample);
-            variance += f64::from(sample) * (i as f64 % 81.0 - 40.0).powi(2);
+            variance += f64::from(sample) * x * x;
         }
         assert!((mass - 1.0).abs() < 1e-5, "{deviation}: {mass}");
         assert!((variance / (deviation * deviation) - 1.0).abs() < 1e-4, "{deviation}: {variance}");

@@ -10,10 +10,13 @@ mod standing;
 mod unsteady;
 pub(crate) mod voronoi;
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 
 use crate::diag::{Code, Diagnostic};
 use crate::geom::{Figure, Length, Period, Pieces, Point, Rect, Vec2};
+use crate::pass::link;
 use crate::region::{FillRule, Region};
 use crate::scene::{Asked, Blend, Canvas, Edge, Paint, Shape};
 use crate::stage::{Angles, Graph, Layers, Sites, Standing, Tiles, Tiling};
@@ -67,7 +70,16 @@ pub fn cut(
 ) -> Tiles {
     let visible = visible(paint, canvas);
     let ground = Ground::new(&visible, paint);
-    let shaper = Shaper::new(paint, sites, graph, angles);
+    let links = match paint.tone.shape {
+        Shape::Voronoi { .. } => link::delaunay_links(sites, graph, paint.tone.link),
+        Shape::Rect { .. }
+        | Shape::Hexagon { .. }
+        | Shape::Triangle { .. }
+        | Shape::Trapezoid { .. }
+        | Shape::Stamp { .. }
+        | Shape::Cell { .. } => Cow::Borrowed(graph),
+    };
+    let shaper = Shaper::new(paint, sites, &links, angles);
     let chunks: Vec<Chunk> = (0..sites.points.len().div_ceil(CHUNK))
         .into_par_iter()
         .map(|chunk| {

@@ -67,7 +67,7 @@ impl Lattice {
     /// A place with its number, by how many lie before it.
     pub(super) fn place(&self, i: u64) -> Option<(i64, f64)> {
         let number = self.range.0 + i as f64;
-        (number <= self.range.1).then(|| (number as i64, self.origin + number * self.step))
+        (number <= self.range.1).then_some((number as i64, self.origin + number * self.step))
     }
 
     /// The places with their numbers, in order.

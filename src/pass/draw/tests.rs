@@ -15,8 +15,8 @@ use crate::pass::fixture::{self, canvas};
 use crate::pass::{cut, link, place, turn};
 use crate::region::Region;
 use crate::scene::{
-    AngleRule, Asked, Blend, Cap, Colour, Draw, Edge, Fill, FillKind, GridSize, Ground, Hatch, LayerGroup, Outline,
-    Over, Placement, Scene, Shape,
+    AngleRule, Asked, Blend, Cap, Colour, Draw, Edge, Fill, FillKind, GridSize, Ground, Hatch, LayerGroup, Link,
+    Outline, Over, Placement, Scene, Shape,
 };
 use crate::stage::Standing;
 
@@ -49,6 +49,29 @@ fn star(radius: f64) -> Shape {
         Point::default() + Angle::degrees(36.0 * f64::from(i)).unit() * radius
     };
     Shape::Stamp { outline: (0..10).map(corner).collect(), size: None, overlap: None, upright: false }
+}
+
+/// Voronoi cells are those of the sites, whichever of them are neighbours.
+#[test]
+fn voronoi_cells_do_not_hang_on_the_links() {
+    let canvas = canvas(12.0, 12.0);
+    let mut paint = paint(&canvas);
+    paint.tone.place = Placement::Pinwheel { edge: Length::mm(1.5) };
+    paint.tone.shape = voronoi(0.0, 0.0);
+    let outlines = |paint: &Paint| {
+        let run = Run::new(paint, &canvas);
+        (0..run.tiles.len()).map(|tile| run.tiles.outline(tile).to_vec()).collect::<Vec<_>>()
+    };
+    let delaunay = outlines(&paint);
+    paint.tone.link = Link::Edges;
+    assert_eq!(outlines(&paint), delaunay);
+    paint.tone.ground = Some(Ground::Nearest);
+    paint.tone.shape = rect_shape(Some(0.6), None);
+    let drawn = |paint: &Paint| lines(&layers(paint, &canvas, &Run::new(paint, &canvas)));
+    paint.tone.angle = AngleRule::Fixed(Angle::ZERO);
+    let edges = drawn(&paint);
+    paint.tone.link = Link::Delaunay;
+    assert_eq!(drawn(&paint), edges);
 }
 
 fn linear(to: Point, start: f64, end: f64) -> Field {

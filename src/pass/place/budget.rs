@@ -55,7 +55,7 @@ impl Budget {
         let (moves, most, limit) = (grouped(rounded(moves)), grouped(most), grouped(self.tiles as f64));
         let call = describe(placement);
         let message = format!("`{call}` would move tiles {moves} times; a limit of {limit} tiles allows {most}");
-        Err(self.exceeded(placement, message))
+        Err(self.exceeded(placement, message).label("too many rounds"))
     }
 
     /// A search grid of `columns * rows` empty cells.

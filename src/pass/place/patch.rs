@@ -93,7 +93,8 @@ impl<'a> Patch<'a> {
         let corners: Vec<Point> = cell.corners.iter().map(|&p| self.page(p)).collect();
         let bounds = ring_bounds(&corners);
         let is_inside = self.extent.intersection(&bounds) == bounds;
-        if !is_inside && !(bounds.touches(&self.extent) && convex_overlap(&corners, &self.extent.corners())) {
+        let comes_in = || bounds.touches(&self.extent) && convex_overlap(&corners, &self.extent.corners());
+        if !is_inside && !comes_in() {
             return;
         }
         if self.ground.wants_cells {

@@ -70,6 +70,8 @@ struct End {
 /// All lines of a drawing.
 pub(super) struct Network {
     pub(super) pieces: Vec<Piece>,
+    /// How many of the pieces are those of strokes; they come first.
+    strokes: usize,
     lines: Vec<Line>,
     ends: Vec<End>,
     tree: Nearest,
@@ -79,7 +81,8 @@ pub(super) struct Network {
 impl Network {
     pub(super) fn new(lines: &Lines, border: Border) -> Self {
         let tree = Nearest::new(&[]);
-        let mut network = Self { pieces: Vec::new(), lines: Vec::new(), ends: Vec::new(), tree, widest: 0.0 };
+        let mut network =
+            Self { pieces: Vec::new(), strokes: 0, lines: Vec::new(), ends: Vec::new(), tree, widest: 0.0 };
         for centre in &lines.centres {
             let line = network.add(&centre.points, centre.radius);
             let (Some(added), Some(&first), Some(&last)) =
@@ -93,6 +96,7 @@ impl Network {
                 network.ends.extend(ends.into_iter().filter(|end| lines.page.contains(end.at)));
             }
         }
+        network.strokes = network.pieces.len();
         for ring in lines.dark.polygons().iter().flat_map(Polygon::rings) {
             let closed: Vec<Point> = ring.iter().chain(ring.first()).copied().collect();
             let line = network.add(&closed, 0.0);
@@ -121,6 +125,11 @@ impl Network {
         self.lines.push(Line { pieces: start..self.pieces.len(), length, is_closed });
         self.widest = self.widest.max(radius);
         line
+    }
+
+    /// The pieces of all strokes.
+    pub(super) fn strokes(&self) -> &[Piece] {
+        self.pieces.get(..self.strokes).unwrap_or_default()
     }
 
     /// The pieces of a line.

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Ends, Lack, Mark, MarkKind, Placement, Rgba, Selection, Step, SvgError, SvgFile, snapped};
 use crate::geom::{Length, Point, Rect};
-use crate::region::{Region, chain};
+use crate::region::{Operation, Region, chain};
 
 /// What a part of a file draws.
 #[derive(Debug, Clone)]
@@ -48,12 +48,13 @@ pub enum InkShape {
 const WIDTHS: f64 = 1e-4;
 
 impl SvgFile {
-    /// What a part of the file draws. As for `fit`, see [`SvgFile::region`].
+    /// What a part of the file draws on its page. As for `fit`, see [`SvgFile::region`].
     ///
     /// # Errors
     /// Where there is no such part, nothing of it is drawn, or outlines cross too often.
     pub fn ink(&self, selection: Selection<'_>, fit: Option<Rect>) -> Result<Inked, SvgError> {
         let place = self.place(fit);
+        let page = Region::rect(place.page);
         let mut lacks = if selection == Selection::Whole { self.unread.clone() } else { BTreeSet::new() };
         let mut clips = BTreeMap::new();
         let mut marks = Vec::new();
@@ -62,7 +63,10 @@ impl SvgFile {
             let Some(colour) = mark.colour.filter(|colour| colour[3] > 0) else { continue };
             let shape = match mark.kind {
                 MarkKind::Fill(_) => {
-                    Some(self.union(std::iter::once(mark), &place)?).filter(|area| !area.is_empty()).map(InkShape::Area)
+                    let area = self.union(std::iter::once(mark), &place)?;
+                    let is_whole = [area.bounds().min, area.bounds().max].into_iter().all(|p| place.page.contains(p));
+                    let area = if is_whole { area } else { area.try_combined(&page, Operation::Intersection)? };
+                    (!area.is_empty()).then_some(InkShape::Area(area))
                 }
                 MarkKind::Stroke { width, ends } => {
                     let width = (width * place.scale / WIDTHS).round() * WIDTHS;
@@ -70,6 +74,8 @@ impl SvgFile {
                     if ends == Ends::Square {
                         chains.iter_mut().for_each(|chain| chain::lengthen(chain, width / 2.0));
                     }
+                    let chains: Vec<Vec<Point>> =
+                        chains.iter().flat_map(|chain| chain::clipped(chain, &page)).collect();
                     let is_round = ends == Ends::Round;
                     let is_seen = width > 0.0 && !chains.is_empty();
                     is_seen.then_some(InkShape::Lines { width: Length::mm(width), is_round, chains })

@@ -284,7 +284,7 @@ proptest! {
         let reach = 0.2 + margin;
         for (spine, _) in strokes(&layers(&paint, &canvas, &run)) {
             // Some tile holds the piece but for what it overshoots, and no later one comes over it.
-            let clearance = |tile: usize, p: Point| convex_clearance(run.tiles.outline(tile), p);
+            let clearance = |tile: usize, p: Point| run.tiles.figure(tile).clearance(p);
             let is_of = |&tile: &usize| {
                 run.tiles.is_drawn(tile)
                     && spine.iter().all(|&p| clearance(tile, p) > -reach)
@@ -307,7 +307,7 @@ proptest! {
                 prop_assert!((radius / 0.1 - 1.0).abs() <= LOOSE.pen + NEAR);
                 for &p in &dots.centres {
                     let tile = run.top(p).unwrap();
-                    prop_assert!(convex_clearance(run.tiles.outline(tile), p) > radius - NEAR);
+                    prop_assert!(run.tiles.figure(tile).clearance(p) > radius - NEAR);
                     prop_assert!(run.visible.signed_distance(p) > radius - NEAR);
                 }
             }
