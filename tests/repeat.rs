@@ -107,8 +107,9 @@ impl Marks {
 /// Both borders of both axes meet the same strokes.
 fn check_continuations(drawing: &Drawing) -> Result<(), String> {
     let marks = Marks::of(drawing);
-    for axis in [0, 1] {
-        let (near, far) = (marks.crossings(axis, 0.0), marks.crossings(axis, PERIOD[axis]));
+    // Beside the borders, within the reach of the thinnest pen: on them tiles of a lattice may end exactly.
+    for (axis, beside) in [(0, 0.0371), (0, -0.0371), (1, 0.0371), (1, -0.0371)] {
+        let (near, far) = (marks.crossings(axis, beside), marks.crossings(axis, PERIOD[axis] + beside));
         if near.len() != far.len() {
             return Err(format!("axis {axis}: strokes at {near:?} at one border, at {far:?} at the other"));
         }
