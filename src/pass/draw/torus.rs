@@ -376,7 +376,7 @@ mod tests {
         one.strokes.push(strokes);
         let found = wrapped(one);
         let runs = &found.strokes[0].polylines;
-        assert_eq!(runs[0], points(&[(8.0, 4.0), (8.0, 2.0), (12.0, 2.0)]).as_slice().to_vec());
+        assert_eq!(runs[0], points(&[(12.0, 4.0), (8.0, 4.0), (8.0, 2.0), (12.0, 2.0)]));
         assert_eq!(runs.len(), 2);
     }
 
