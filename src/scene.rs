@@ -570,8 +570,8 @@ pub enum Shape {
     Trapezoid {
         /// By which share the narrow end is shorter than the wide one, from 0 to 1.
         taper: f64,
-        /// The wide end and the distance of both; where it is not given, those of a trapezoid as large as a square of the
-        /// placement's spacing.
+        /// The distance of both ends and their mean length, so that it is as large as a square of this side; the
+        /// placement's spacing where it is not given.
         size: Option<Length>,
         /// Scales it.
         overlap: Option<f64>,

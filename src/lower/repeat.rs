@@ -180,8 +180,10 @@ fn tile_size(tone: &Tone, spacing: Option<Length>) -> Option<Length> {
     match &tone.shape {
         Shape::Rect { width, height, overlap, .. } => sized([*width, *height], *overlap, IRREGULAR_OVERLAP),
         Shape::Hexagon { size, overlap, .. } => sized([*size, None], *overlap, IRREGULAR_OVERLAP),
-        Shape::Triangle { size, overlap, .. } | Shape::Trapezoid { size, overlap, .. } => {
-            sized([*size, None], *overlap, POINTED_OVERLAP)
+        Shape::Triangle { size, overlap, .. } => sized([*size, None], *overlap, POINTED_OVERLAP),
+        // Its wide end is longer than the mean of both.
+        Shape::Trapezoid { taper, size, overlap, .. } => {
+            sized([*size, None], *overlap, POINTED_OVERLAP).map(|side| side * (2.0 / (2.0 - taper)))
         }
         Shape::Stamp { outline, size, overlap, .. } => {
             let bounds = ring_bounds(outline);

@@ -217,7 +217,9 @@ mod tests {
         let (clipped, _, warnings) = tiles(&paint, &canvas);
         assert_eq!(warnings.len(), 1);
         assert_eq!(warnings[0].code, Code::TooDark);
-        assert!(warnings[0].message.starts_with("77 %") || warnings[0].message.starts_with("78 %"), "{warnings:?}");
+        // The tone prints up to 0.23; tiles count as wholes.
+        let share: f64 = warnings[0].message.split(' ').next().unwrap().parse().unwrap();
+        assert!((share - 77.0).abs() < 4.0, "{warnings:?}");
         assert!(clipped.layers.iter().all(|layers| !layers.is_solid));
 
         let (canvas, paint) = cells(across(0.0, 1.0), Range::Clip, Some(0.5));

@@ -48,10 +48,10 @@ impl Stamp {
                 convex(corners, upright)
             }
             Shape::Trapezoid { taper, size, overlap, upright } => {
-                let (wide, narrow) = (1.0, 1.0 - taper);
-                // The distance of the ends is the wide end's length.
-                let scale = scale(overlap, size.is_some(), POINTED_OVERLAP);
-                let size = size.map_or(spacing / f64::midpoint(wide, narrow).sqrt(), Length::to_mm) * scale;
+                // The mean of both ends is as long as their distance, so that it covers what a square of its size does.
+                let wide = 2.0 / (2.0 - taper);
+                let narrow = wide * (1.0 - taper);
+                let size = or_spacing(size) * scale(overlap, size.is_some(), POINTED_OVERLAP);
                 let before = (wide + 2.0 * narrow) / (3.0 * (wide + narrow));
                 let (left, right) = (-before, 1.0 - before);
                 let mut corners = vec![Vec2::new(left, -wide / 2.0), Vec2::new(right, -narrow / 2.0)];
@@ -136,7 +136,7 @@ mod tests {
         for taper in [0.0, 0.6, 1.0] {
             assert!((area(&trapezoid(taper, None), &GRID) - 4.0).abs() < 1e-12);
             let sized = area(&trapezoid(taper, Some(Length::mm(4.0))), &points);
-            assert!((sized - 16.0 * (1.0 - taper / 2.0)).abs() < 1e-12);
+            assert!((sized - 16.0).abs() < 1e-12);
         }
         assert_eq!(outline(&trapezoid(1.0, None), &GRID, 0.0).len(), 3);
     }
@@ -150,8 +150,9 @@ mod tests {
         assert!((ring[1].y - ring[2].y).abs() < 1e-12);
         let ring = outline(&Shape::Trapezoid { taper: 0.6, size, overlap: None, upright: true }, &GRID, 45.0);
         let bounds = ring_bounds(&ring);
-        assert!((bounds.width() - 3.0).abs() < 1e-12 && (bounds.height() - 3.0).abs() < 1e-12);
-        assert!((ring[2].y - ring[1].y - 1.2).abs() < 1e-12 && ring[1].x > ring[0].x);
+        let (wide, narrow) = (3.0 / 0.7, 1.2 / 0.7);
+        assert!((bounds.width() - 3.0).abs() < 1e-12 && (bounds.height() - wide).abs() < 1e-12);
+        assert!((ring[2].y - ring[1].y - narrow).abs() < 1e-12 && ring[1].x > ring[0].x);
         // The centre of its area lies on the site.
         assert!((bounds.min.x - (5.0 - 3.0 * 1.8 / 4.2)).abs() < 1e-12);
     }

@@ -218,7 +218,7 @@ fn ink_is_what_is_drawn_in_its_order() {
     let drawing = file(
         "<g transform='scale(2 8)'><path d='M0 0 C1 0 2 1 3 3' fill='none' stroke='#123' stroke-width='3'/></g>
          <rect id='both' x='20' width='10' height='10' fill='white' stroke='black' stroke-opacity='0.5' stroke-linecap='round'/>
-         <path id='dashed' d='M0 50 H10' stroke='black' stroke-dasharray='2' stroke-linecap='square'/>
+         <path id='dashed' d='M5 50 H15' stroke='black' stroke-dasharray='2' stroke-linecap='square'/>
          <path id='nothing' d='M0 50 H10' stroke='black' stroke-opacity='0'/>",
     );
     let marks = drawing.ink(Selection::Whole, None).unwrap().marks;

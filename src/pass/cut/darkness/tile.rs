@@ -71,7 +71,13 @@ impl<'a> Reckoner<'a> {
         let mut reckoner = Self { bed, fills: &tone.fill, yard, held, levels, areas, seen: Silhouette::default() };
         let held = [1, 2, 3, 4].map(|number| reckoner.mean_held(number));
         reckoner.held = held;
-        reckoner.levels = ink::levels(&tone.fill, bed.canvas.gain, &held);
+        let mean = match yard {
+            Yard::Tile => (reckoner.areas.iter().sum::<f64>() / reckoner.areas.len().max(1) as f64 / PI).sqrt(),
+            Yard::Disc(radius) => radius,
+        };
+        // Where there is no tile there is nothing to reckon.
+        let mean = if mean > 0.0 { mean } else { bed.sites.spacing };
+        reckoner.levels = ink::levels(&tone.fill, bed.canvas.gain, &held, Length::mm(mean));
         reckoner
     }
 
