@@ -4,7 +4,7 @@ use super::{Cubic, Length, Point, Vec2};
 
 /// How far the control points of half a sine wave lie from its ends, as a share of its length: 1 - 2 / pi, at which the slope
 /// midway is that of the sine. The curve lies within a thousandth of the amplitude of it.
-const WAVE: f64 = 0.363_380_227_632_418_66;
+const WAVE: f64 = 0.363_380_227_632_418_7;
 
 /// How far the control points of a quarter of a circle lie from its ends, in radii: 4 / 3 (sqrt 2 - 1).
 const QUARTER: f64 = 0.552_284_749_830_793_4;

@@ -17,6 +17,10 @@ const ROUNDS: u32 = 60;
 /// How near a zero is found, in a curve's parameter.
 const ZERO: f64 = 1e-12;
 
+/// The search for a zero begins no nearer to either end than this: a curve may end on the outline and cross it elsewhere, and
+/// at such an end rounding decides the sign.
+const AWAY: f64 = 1e-6;
+
 /// A convex polygon in a frame's coordinates.
 #[derive(Debug, Clone, Default)]
 pub struct Hull {
@@ -202,7 +206,7 @@ fn zero(&[a, b, c, d]: &[f64; 4]) -> f64 {
     // In powers of the parameter.
     let (linear, square, cube) = (3.0 * (b - a), 3.0 * ((c - b) - (b - a)), (d - a) - 3.0 * (c - b));
     let (mut low, mut high) = (0.0, 1.0);
-    let mut t = (a / (a - d)).clamp(0.0, 1.0);
+    let mut t = (a / (a - d)).clamp(AWAY, 1.0 - AWAY);
     for _ in 0..ROUNDS {
         let value = a + t * (linear + t * (square + t * cube));
         if (value < 0.0) == (a < 0.0) {
@@ -275,6 +279,24 @@ mod tests {
             out.clear();
             hull.cut(&Cubic::line(Point::new(start, 0.0), Point::new(0.0, 0.0)), 0, &mut out);
             assert!(out.len() == 1 && out[0].1 == 1.0 && out[0].0 < 0.3, "{start}: {out:?}");
+        }
+    }
+
+    #[test]
+    fn a_curve_that_swings_about_a_side_is_cut_in_its_middle() {
+        // Both ends lie on the side y = 1.7, but for rounding; the first half swings out and the second in, or turned round.
+        let rounding = [-3e-16, -1e-16, 0.0, 1e-16, 3e-16];
+        for (from, to) in rounding.iter().flat_map(|from| rounding.map(|to| (*from, to))) {
+            for (swing, kept) in [(0.4, (0.5, 1.0)), (-0.4, (0.0, 0.5))] {
+                let points = [(-0.3, from), (-0.1, swing), (0.1, -swing), (0.3, to)];
+                let mut out = Vec::new();
+                let cubic = Cubic(points.map(|(x, y)| Point::new(x, y)));
+                let planes = vec![HalfPlane { normal: Vec2::new(0.0, 1.0), offset: 0.0 }];
+                Hull { planes, ..hull(&hexagon()) }.cut(&cubic, 0, &mut out);
+                out.retain(|(from, to)| to - from > 1e-9);
+                assert_eq!(out.len(), 1, "{from} {to}: {out:?}");
+                assert!((out[0].0 - kept.0).abs() < 1e-9 && (out[0].1 - kept.1).abs() < 1e-9, "{from} {to}: {out:?}");
+            }
         }
     }
 

@@ -186,9 +186,14 @@ impl Index {
     /// Calls `visit` with the cells of every row that the line from `a` to `b` comes into, a hair's breadth more on
     /// either side, so that two lines that meet share a cell whatever the rounding. Cells off the grid are those at
     /// its rim.
-    fn cells_along(&self, a: Point, b: Point, mut visit: impl FnMut(std::ops::Range<usize>)) {
+    fn cells_along(&self, a: Point, b: Point, visit: impl FnMut(std::ops::Range<usize>)) {
+        self.cells_beside(a, b, 0.0, visit);
+    }
+
+    /// The same with every cell that holds a place within `reach` millimetres of the line.
+    fn cells_beside(&self, a: Point, b: Point, reach: f64, mut visit: impl FnMut(std::ops::Range<usize>)) {
         let (top, bottom) = if a.y <= b.y { (a, b) } else { (b, a) };
-        let hair = [self.cell[0] * 1e-6, self.cell[1] * 1e-6];
+        let hair = [self.cell[0] * 1e-6 + reach, self.cell[1] * 1e-6 + reach];
         let slope = (bottom.x - top.x) / (bottom.y - top.y);
         // Where a line is all but level, rounding of y would be a long way in x.
         let is_steep = slope.abs() < 1e4;
@@ -255,6 +260,22 @@ impl Index {
             let end = self.offsets[row * self.columns + right + 1] as usize;
             self.listed[start..end].iter().any(|&i| meets_box(&self.segments[i as usize], area))
         })
+    }
+
+    /// Calls `visit` with the ends of every piece of the outline that comes within `reach` millimetres of the line from
+    /// `a` to `b`, some of them more than once, and with some that lie farther away.
+    pub(super) fn beside(&self, a: Point, b: Point, reach: f64, mut visit: impl FnMut(Point, Point)) {
+        let area = Rect::EMPTY.including(a).including(b).grown(reach);
+        if self.segments.is_empty() || !self.bounds.touches(&area) {
+            return;
+        }
+        self.cells_beside(a, b, reach, |cells| {
+            let listed = self.offsets[cells.start] as usize..self.offsets[cells.end] as usize;
+            for &i in &self.listed[listed] {
+                let Segment { a, b } = self.segments[i as usize];
+                visit(a, b);
+            }
+        });
     }
 
     /// Appends the parameter intervals of the line from `a` to `b` that are inside, in order.

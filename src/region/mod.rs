@@ -259,6 +259,12 @@ impl Region {
         self.index().clip_line(a, b, out);
     }
 
+    /// Calls `visit` with the ends of every straight piece of the outline that comes within `reach` of the line from `a` to
+    /// `b`, some of them more than once, and with some that lie farther away.
+    pub fn outline_beside(&self, a: Point, b: Point, reach: Length, visit: impl FnMut(Point, Point)) {
+        self.index().beside(a, b, reach.to_mm(), visit);
+    }
+
     /// Whether any piece of the outline comes into a closed box. Where none does, the box lies wholly inside or wholly
     /// outside.
     #[must_use]

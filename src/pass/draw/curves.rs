@@ -147,8 +147,7 @@ pub(super) fn trace(
     chain: &mut Vec<Point>,
 ) -> Result<(), Exceeded> {
     let count = course.count(range);
-    // Written so that what is not a number is too many.
-    if !(count <= MOST_CURVES) {
+    if count.is_nan() || count > MOST_CURVES {
         return Err(Exceeded::Places { what: "curves", count: count as u64 });
     }
     job.budget.work(count * CURVE as f64)?;
@@ -390,9 +389,12 @@ pub(super) fn emit(
     if out.len() > job.budget.limit() { Err(Exceeded::Marks) } else { Ok(out.len() > before) }
 }
 
+/// The ranges of a chain that are strokes by themselves, and two that are one.
+type Strokes<'r> = (&'r [(f64, f64)], Option<[(f64, f64); 2]>);
+
 /// The ranges of a chain that are strokes by themselves, and the two that are one: a closed chain that is cut elsewhere runs
 /// on through its first point.
-pub(super) fn pieces<'r>(chain: &[Point], ranges: &'r [(f64, f64)]) -> (&'r [(f64, f64)], Option<[(f64, f64); 2]>) {
+pub(super) fn pieces<'r>(chain: &[Point], ranges: &'r [(f64, f64)]) -> Strokes<'r> {
     let end = chain::count(chain) as f64;
     match ranges {
         [first, middle @ .., last] if chain.first() == chain.last() && first.0 == 0.0 && last.1 == end => {

@@ -85,8 +85,8 @@ impl Cutout {
             let mut done = 0;
             for &(start, end) in ranges {
                 let last = (end.ceil() as usize).min(boxes.len());
-                for number in done.max(start as usize)..last {
-                    if piece.may_meet(&boxes[number])
+                for (number, area) in boxes.iter().enumerate().take(last).skip(done.max(start as usize)) {
+                    if piece.may_meet(area)
                         && let Some(cubic) = chain::curve(chain, number)
                     {
                         piece.cut(&cubic, number, found);

@@ -1,4 +1,4 @@
-//! Which drawn tiles, or which corners of an outline, lie near a place.
+//! Which drawn tiles lie near a place.
 //!
 //! Points are sorted into the cells of a square grid that has about as many cells as there are points, in two flat lists,
 //! so that a million tiles cost a few bytes each.
@@ -158,46 +158,5 @@ impl<'a> Nearby<'a> {
         let pieces = (length / (2.0 * self.buckets.cell)).ceil().clamp(1.0, MOST_CELLS) as u32;
         let half = length / f64::from(pieces) / 2.0;
         (0..pieces).map(move |piece| (a.lerp(b, (f64::from(piece) + 0.5) / f64::from(pieces)), half))
-    }
-}
-
-/// The corners of an outline by place.
-pub(super) struct Corners {
-    points: Vec<Point>,
-    buckets: Buckets,
-}
-
-impl Corners {
-    pub(super) fn new(points: Vec<Point>) -> Self {
-        let buckets = Buckets::new(&points, 0..points.len(), 0.0);
-        Self { points, buckets }
-    }
-
-    /// Calls `visit` with every corner in a box, and some round it.
-    pub(super) fn within(&self, area: &Rect, mut visit: impl FnMut(Point)) {
-        self.buckets.visit(area, |i| visit(self.points[i as usize]));
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-
-    proptest! {
-        #[test]
-        fn nothing_within_a_box_is_missed(
-            points in prop::collection::vec((0.0..10.0, -5.0..5.0), 0..60),
-            (x, y, w, h) in (-1.0..11.0, -6.0..6.0, 0.0..4.0, 0.0..4.0),
-        ) {
-            let points: Vec<Point> = points.into_iter().map(|(x, y)| Point::new(x, y)).collect();
-            let area = Rect::new(Point::new(x, y), Point::new(x + w, y + h));
-            let mut found = Vec::new();
-            Corners::new(points.clone()).within(&area, |p| found.push(p));
-            for &p in points.iter().filter(|p| area.contains(**p)) {
-                prop_assert_eq!(found.iter().filter(|&&q| q == p).count(), points.iter().filter(|&&q| q == p).count());
-            }
-        }
     }
 }

@@ -206,7 +206,7 @@ mod tests {
     #[test]
     fn crossed_lines_leave_the_product_bare() {
         let lines = fill(FillKind::Lines(hatch(1.0, 0.25)));
-        near(levels_of(&[lines.clone()]), [0.0, 0.25, 0.4375, 0.578_125, 0.683_593_75]);
+        near(levels_of(std::slice::from_ref(&lines)), [0.0, 0.25, 0.4375, 0.578_125, 0.683_593_75]);
         near(levels_of(&[lines, fill(FillKind::Solid)]), [0.0, 0.25, 1.0, 1.0, 1.0]);
     }
 
