@@ -230,18 +230,21 @@ pub struct Layers {
     /// What there is of the next layer, in [0, 1): the share of its lines that is drawn, or, where a darkness is asked
     /// for, how densely they stand, as a share of the fill's own density.
     pub part: f64,
+    /// How densely the last full layer stands, as a share of the fill's own density, in (0, 1]: 1 unless it makes room for
+    /// a thin layer after it.
+    pub last: f64,
     /// Whether the tile is inked all over, whatever its layers are.
     pub is_solid: bool,
 }
 
 impl Layers {
     /// Inked all over.
-    pub const SOLID: Self = Self { full: 4, part: 0.0, is_solid: true };
+    pub const SOLID: Self = Self { full: 4, part: 0.0, last: 1.0, is_solid: true };
 
     /// Full layers and a part of the next.
     #[must_use]
     pub const fn new(full: u8, part: f64) -> Self {
-        Self { full, part, is_solid: false }
+        Self { full, part, last: 1.0, is_solid: false }
     }
 
     /// Whether nothing is drawn and nothing hidden.

@@ -116,7 +116,7 @@ pub fn cut(
             let bed = Bed { paint, canvas, sites, graph, angles, tiles: &tiles };
             let (layers, warning) = darkness::layers(&bed, darkness);
             warnings.extend(warning);
-            (layers.iter().map(|layers| f64::from(layers.full) + layers.part).collect(), layers)
+            (layers.iter().map(|layers| f64::from(layers.full) - 1.0 + layers.last + layers.part).collect(), layers)
         }
     };
     warnings.extend(unsteady::warnings(paint, sites));

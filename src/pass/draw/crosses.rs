@@ -1,6 +1,7 @@
 //! Crosses along the hatch lines: two short strokes each, one along the line and one across it.
 //!
-//! A cross is drawn where its middle is seen, and its arms end where the tile does: on the tile's edge half of it is left.
+//! A cross is drawn where its middle is seen, and its arms end where the tile does; one that would lose more than a little
+//! is left out.
 
 use crate::geom::clip::{Frame, TOLERANCE};
 use crate::geom::{Length, Point, Vec2};
@@ -15,6 +16,9 @@ use super::lattice::is_drawn;
 use super::lines::interleaved;
 use super::palette::Batch;
 use super::stroke::CRUMB;
+
+/// The least share of its arms that is left of a cross: what has lost more is a splinter.
+const KEPT: f64 = 0.7;
 
 /// How crosses are set.
 pub(super) struct Crossing<'a> {
@@ -94,6 +98,7 @@ fn cross(
         return Ok(());
     }
     let half = crossing.size.to_mm() / 2.0;
+    let first = out.lines.len();
     for arm in ARMS {
         let frame = Frame::new(page, layer.frame.along * arm.x + layer.frame.along.turned() * arm.y);
         if is_on_frame(&frame, half / 2.0) {
@@ -118,6 +123,10 @@ fn cross(
             cover.line(start, end, |(from, to)| ranges.subtract(place(from), place(to)));
         }
         draw_arm(job, crossing, &frame, layer.is_clipped, scratch, out);
+    }
+    let left: f64 = out.lines[first..].iter().map(|[start, end]| start.distance(*end)).sum();
+    if left < KEPT * 4.0 * half {
+        out.lines.truncate(first);
     }
     Ok(())
 }

@@ -135,10 +135,11 @@ impl Job<'_> {
         let fills = &self.paint.tone.fill;
         let kind = &fills[usize::from(number.saturating_sub(1)).min(fills.len() - 1)].kind;
         match self.paint.tone.asked {
-            _ if number <= layers.full => (Cow::Borrowed(kind), 1.0),
+            _ if number < layers.full || (number == layers.full && layers.last >= 1.0) => (Cow::Borrowed(kind), 1.0),
             Asked::K(_) => (Cow::Borrowed(kind), layers.part),
             Asked::Darkness(_) => {
-                let Thinned { kind, share } = thinned(kind, number, layers.part);
+                let density = if number == layers.full { layers.last } else { layers.part };
+                let Thinned { kind, share } = thinned(kind, number, density);
                 (Cow::Owned(kind), share)
             }
         }

@@ -69,7 +69,7 @@ impl Strand {
     /// How wide the guide is at a place along it, against its middle.
     fn scale(&self, u: f64) -> f64 {
         let middle = (self.ends.0 + self.ends.1) / 2.0;
-        (1.0 + self.widening * (u - middle)).max(NARROWEST / 2.0)
+        (1.0 + self.widening * (u - middle)).max(NARROWEST)
     }
 
     /// The unit vectors, in the frame, of the axis's swing at both ends.

@@ -21,6 +21,9 @@ const FINE: f64 = 8.0;
 /// Less than so much of a line or dot is not drawn: it would be far too dark.
 const LEAST: f64 = 0.5;
 
+/// The least share of its strokes that a layer over others comes with: fewer look like slips of the pen.
+const FEWEST: f64 = 1.0 / 3.0;
+
 /// Tiles over a place, on average, from which on what is seen of a tile is no longer its own outline.
 const OVERLAPPING: f64 = 1.05;
 
@@ -99,9 +102,53 @@ impl<'a> Reckoner<'a> {
         let Some(&above) = levels.get(full + 1) else { return (Layers::new(full as u8, 0.0), levels[full]) };
         let room = above - levels[full];
         let part = if room > NEAR { (wanted - levels[full]).max(0.0) / room } else { 0.0 };
+        if full > 0
+            && part > NEAR
+            && part < FEWEST
+            && let Some(crossed) = self.crossed(tile, full, wanted)
+        {
+            return crossed;
+        }
         let drawn = if part > NEAR { self.drawn(tile, full as u8 + 1, part) } else { 0.0 };
         let part = if drawn > 0.0 { part } else { 0.0 };
         (Layers::new(full as u8, part), levels[full] + room * drawn)
+    }
+
+    /// The last full layer and the one after it where the latter alone would be a stroke or two over a finished tile: it
+    /// comes with its fewest strokes, and the last full layer makes room for them.
+    fn crossed(&mut self, tile: usize, full: usize, wanted: f64) -> Option<(Layers, f64)> {
+        let is_stroked = |number: usize| match self.kind(number as u8) {
+            FillKind::Lines(_)
+            | FillKind::Dashes { .. }
+            | FillKind::Waves { .. }
+            | FillKind::Scribble { .. }
+            | FillKind::Nawaami { .. } => true,
+            FillKind::Arcs(_)
+            | FillKind::Dots { .. }
+            | FillKind::Crosses { .. }
+            | FillKind::Motif { .. }
+            | FillKind::Solid => false,
+        };
+        let (bare, [below, above]) = self.steps(full)?;
+        if !is_stroked(full) || !is_stroked(full + 1) {
+            return None;
+        }
+        let left = 1.0 - above * self.drawn(tile, full as u8 + 1, FEWEST);
+        if left >= 1.0 {
+            return None;
+        }
+        let last = ((1.0 - (1.0 - wanted) / (bare * left)) / below).clamp(FEWEST, 1.0);
+        let layers = Layers { last, ..Layers::new(full as u8, FEWEST) };
+        Some((layers, self.ink(tile, layers)))
+    }
+
+    /// What is bare under the last of some full layers, and what that one and the next cover of what is bare under each.
+    fn steps(&self, full: usize) -> Option<(f64, [f64; 2])> {
+        let bare = 1.0 - self.levels.get(full.checked_sub(1)?)?;
+        let covered = 1.0 - self.levels.get(full)?;
+        let all = 1.0 - self.levels.get(full + 1)?;
+        let is_worth = bare > NEAR && covered > NEAR && bare - covered > NEAR;
+        is_worth.then(|| (bare, [1.0 - covered / bare, 1.0 - all / covered]))
     }
 
     /// The share of ink that a tile has of its layers.
@@ -111,6 +158,12 @@ impl<'a> Reckoner<'a> {
         }
         let full = usize::from(layers.full).min(LAYERS);
         let Some(&above) = self.levels.get(full + 1) else { return self.levels[full] };
+        if layers.last < 1.0
+            && let Some((bare, [last, next])) = self.steps(full)
+        {
+            let last = 1.0 - last * self.drawn(tile, full as u8, layers.last);
+            return 1.0 - bare * last * (1.0 - next * self.drawn(tile, full as u8 + 1, layers.part));
+        }
         let drawn = match self.bed.paint.tone.asked {
             _ if layers.part <= NEAR => 0.0,
             Asked::K(_) => layers.part,
