@@ -86,12 +86,13 @@ fn main() {
             line += &format!("{:+.3} ", found - asked);
         }
         println!("  wedge: steps off by {off:.4}, {falls} falls\n  {line}");
-        let error = ink::error(&drawing, &field, greatest, 2.0 * tile);
-        println!("  wedge: {error:.4?} ({spent} ms)");
+        let ink::Error { mean, bias } = ink::error(&drawing, &field, greatest, 2.0 * tile);
+        println!("  wedge: off by {mean:.4}, bias {bias:+.4} ({spent} ms)");
         for picture in ["astronaut", "camera"] {
             let image = format!("1 - image(\"{picture}.png\", fit: (0mm, 0mm, 105mm, 105mm))");
             let (drawing, field) = page(&scene("(105mm, 105mm)", &image), &loader);
-            println!("  {picture}: {:.4?}", ink::error(&drawing, &field, greatest, 2.0 * tile));
+            let ink::Error { mean, bias } = ink::error(&drawing, &field, greatest, 2.0 * tile);
+            println!("  {picture}: off by {mean:.4}, bias {bias:+.4}");
         }
     }
 }
