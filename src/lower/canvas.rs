@@ -205,7 +205,8 @@ impl<'a> Reader<'_, 'a, '_> {
         let Some(property) = property else { return Some(Length::ZERO) };
         let mm = eval::expect(self.cx, self.scope, &property.value, Slot::of(Kind::Length)).as_length()?;
         if !(0.0..=LARGEST).contains(&mm) {
-            return self.refuse(property.value.span, "`gain` must not be negative");
+            let wrong = if mm < 0.0 { "must not be negative" } else { "is at most 100 metres" };
+            return self.refuse(property.value.span, format!("`gain` {wrong}"));
         }
         self.cx.gain = Some((Length::mm(mm), property.value.span));
         Some(Length::mm(mm))

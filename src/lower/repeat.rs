@@ -77,7 +77,7 @@ pub(super) fn check(
         cx.report(diagnostic.note(span, "painted here"));
         return;
     }
-    if let Some(diagnostic) = too_small(period, (tone, given)) {
+    if let Some(diagnostic) = too_small(period, region, (tone, given)) {
         cx.report(diagnostic.note(span, "painted here"));
         return;
     }
@@ -132,8 +132,8 @@ fn aperiodic(tone: &Tone) -> Option<Diagnostic> {
 }
 
 /// The error that a side of the page is shorter than two tiles.
-fn too_small(period: Period, (tone, given): (&Tone, &ToneValue)) -> Option<Diagnostic> {
-    let spacing = spacing(&tone.place);
+fn too_small(period: Period, region: &Region, (tone, given): (&Tone, &ToneValue)) -> Option<Diagnostic> {
+    let spacing = spacing(&tone.place, region);
     let tile = tile_size(tone, spacing);
     let (side, what, at) = match (tile, spacing) {
         (Some(tile), spacing) if spacing.is_none_or(|spacing| tile >= spacing) => {
@@ -154,18 +154,24 @@ fn too_small(period: Period, (tone, given): (&Tone, &ToneValue)) -> Option<Diagn
     )
 }
 
-/// The distance of neighbouring sites, where the placement says it.
-fn spacing(place: &Placement) -> Option<Length> {
+/// The distance of neighbouring sites, where the placement says it or counts them over the region's box.
+fn spacing(place: &Placement, region: &Region) -> Option<Length> {
+    let bounds = region.bounds();
+    let mean = |count: usize| Length::mm((bounds.width() * bounds.height() / count.max(1) as f64).sqrt());
     match place {
         Placement::Poisson { radius, .. } => Some(*radius),
         Placement::Grid(GridSize::Spacing(spacing)) | Placement::Hex { spacing } => Some(*spacing),
         Placement::Triangles { edge } | Placement::Penrose { edge } | Placement::Pinwheel { edge } => Some(*edge),
         Placement::Uniform { amount: Amount::AsMany(like) } | Placement::Relaxed { placement: like, .. } => {
-            spacing(like)
+            spacing(like, region)
         }
-        Placement::Uniform { amount: Amount::Count { .. } | Amount::Density { .. } }
-        | Placement::Grid(GridSize::Cells { .. })
-        | Placement::Points(_) => None,
+        Placement::Uniform { amount: Amount::Count { count, .. } } => Some(mean(*count as usize)),
+        Placement::Points(points) => Some(mean(points.len())),
+        Placement::Grid(GridSize::Cells { columns, rows }) => {
+            let cell = (bounds.width() / f64::from(*columns)).max(bounds.height() / f64::from(*rows));
+            Some(Length::mm(cell))
+        }
+        Placement::Uniform { amount: Amount::Density { .. } } => None,
     }
 }
 

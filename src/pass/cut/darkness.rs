@@ -113,9 +113,9 @@ fn fit(tiles: &Tiles, darkness: &Darkness, greatest: f64) -> Vec<f64> {
         Range::Fit => {
             let inside = tiles.k.iter().zip(&tiles.inside).filter(|(_, inside)| **inside).map(|(&v, _)| v);
             let (low, high) = inside.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-            // One tone alone has no range that could be stretched.
-            if high - low <= NEAR {
-                return tiles.k.clone();
+            // One tone alone has no range that could be stretched, and neither has what grows beyond all numbers.
+            if !(NEAR..f64::INFINITY).contains(&(high - low)) {
+                return tiles.k.iter().map(|v| if v.is_nan() { 0.0 } else { v.clamp(0.0, 1.0) }).collect();
             }
             // Tiles that are inked all over reach the whole way.
             let top = if darkness.solid.is_some() { 1.0 } else { greatest };

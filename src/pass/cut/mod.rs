@@ -18,7 +18,7 @@ use crate::diag::{Code, Diagnostic};
 use crate::geom::{Figure, Length, Period, Pieces, Point, Rect, Vec2};
 use crate::pass::link;
 use crate::region::{FillRule, Region};
-use crate::scene::{Asked, Blend, Canvas, Edge, Paint, Shape};
+use crate::scene::{Asked, Blend, Canvas, Edge, Paint, Range, Shape};
 use crate::stage::{Angles, Graph, Layers, Sites, Standing, Tiles, Tiling};
 use darkness::Bed;
 use stamp::Stamp;
@@ -90,12 +90,17 @@ pub fn cut(
     let field: Vec<f64> = chunks.iter().flat_map(|chunk| &chunk.asked).copied().collect();
     let standing: Vec<Standing> = chunks.iter().flat_map(|chunk| &chunk.standing).copied().collect();
     let inside: Vec<bool> = chunks.iter().flat_map(|chunk| &chunk.inside).copied().collect();
-    let greatest = match paint.tone.asked {
-        Asked::K(_) => layers::MOST,
-        Asked::Darkness(_) => 1.0,
+    // What is fitted into a range has no other one to leave.
+    let greatest = match &paint.tone.asked {
+        Asked::K(_) => Some(layers::MOST),
+        Asked::Darkness(darkness) => match darkness.range {
+            Range::Clip => Some(1.0),
+            Range::Fit => None,
+        },
     };
-    let asked: Vec<f64> = field.iter().map(|&value| clamp(value, greatest)).collect();
-    warnings.extend(clamped(paint, &field, &standing, greatest));
+    let within = |value: f64| greatest.map_or(value, |greatest| clamp(value, greatest));
+    let asked: Vec<f64> = field.iter().map(|&value| within(value)).collect();
+    warnings.extend(greatest.and_then(|greatest| clamped(paint, &field, &standing, greatest)));
     let rings = chunks.iter().flat_map(Chunk::rings);
     let blank = vec![Layers::new(0, 0.0); asked.len()];
     let tiles = Tiles::new(rings, asked, blank, standing, inside).in_pieces(shaper.pieces());

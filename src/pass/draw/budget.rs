@@ -29,7 +29,10 @@ pub(super) const PROFILE: u64 = 4;
 pub(super) const DOT: u64 = 4;
 
 /// What it costs to make a curve, besides the tiles that may hide it.
-pub(super) const CURVE: u64 = 4;
+pub(super) const CURVE: u64 = 32;
+
+/// What it costs to unite an inked tile with another near it.
+pub(super) const UNITED: u64 = 64;
 
 /// What a curve costs that is drawn: in memory it is a mark.
 pub(super) const DRAWN: u64 = WORK_PER_MARK;

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::geom::{Length, chain, ring_area};
 use crate::scene::{FillKind, Hatch};
 
-use super::budget::{CURVE, DOT, Exceeded, LINE};
+use super::budget::{CURVE, DOT, Exceeded, LINE, UNITED};
 use super::job::Job;
 
 /// Looks, and places of lines, dots and curves.
@@ -81,6 +81,11 @@ fn cost(job: &Job<'_>, tile: usize) -> Cost {
             }
             FillKind::Solid => {}
         }
+    }
+    let is_solid = layers.is_solid || job.paint.tone.fill.iter().any(|fill| matches!(fill.kind, FillKind::Solid));
+    if is_solid && !job.paint.tone.shape.is_cell() {
+        let candidates = job.nearby.candidates(job.sites.points[tile], radius);
+        cost.overlap += u128::from(candidates) * u128::from(UNITED);
     }
     if job.has_covers() {
         // At least a quarter of what is looked at does hide, and its profile is taken once a layer.

@@ -3,7 +3,7 @@
 use crate::field::{Field, Node};
 use crate::geom::{Point, Rect, ring_bounds};
 use crate::region::{FillRule, Region};
-use crate::scene::Blend;
+use crate::scene::{Blend, FillKind};
 
 use super::job::{Job, Layer};
 use super::palette::Batch;
@@ -21,8 +21,14 @@ pub(super) fn draw(job: &Job<'_>, layer: &Layer<'_>, covers: &[u32], out: &mut B
     }
     let (field, area) = (job.paint.tone.asked.field(), layer.area.outline());
     let has_contour = job.paint.tone.blend == Blend::Contour && !matches!(field.node(), Node::Constant(_));
+    // What a cover of the same ink hides it inks itself.
+    let fills = &job.paint.tone.fill;
+    let is_one_ink =
+        !has_contour && fills.iter().all(|fill| matches!(fill.kind, FillKind::Solid) && fill.ink == fills[0].ink);
+    let inks = |&cover: &u32| is_one_ink && job.tiles.layers[job.sites.original(cover as usize)].full > 0;
     let hidden: Vec<Vec<Point>> = covers
         .iter()
+        .filter(|cover| !inks(cover))
         .map(|&cover| job.nearby.figure(cover))
         .filter(|figure| figure.overlaps(layer.area))
         .map(|figure| figure.outline().to_vec())

@@ -118,6 +118,8 @@ impl Cover {
                 let covered = self.covered();
                 if covered > 0.0 { (1.0 - (1.0 - bare - paper) / covered).clamp(0.0, 1.0) } else { 0.0 }
             }
+            // Halving never comes to nothing by itself.
+            Stack::Through if self.on_paper(0.0) >= paper => 0.0,
             Stack::Through => {
                 let (mut low, mut high) = (0.0, 1.0);
                 for _ in 0..HALVINGS {

@@ -12,7 +12,7 @@ use crate::scene::{Fill, FillKind, Hatch};
 use super::super::layers::MOST;
 
 /// Samples along a side of a field of dots that grow together.
-const SAMPLES: u32 = 64;
+const SAMPLES: u32 = 128;
 
 /// Places at which layers of dashes are looked at.
 const PLACES: u32 = 16_384;
@@ -101,6 +101,13 @@ pub(super) fn levels(
                         FillKind::Dashes { hatch, dash, gap } => bricked(&hatch, dash, gap, &layers, radius),
                         _ => 0.0,
                     },
+                    FillKind::Crosses { .. } => match spread(kind, gain) {
+                        FillKind::Crosses { hatch, spacing, size } => {
+                            let places: Vec<[f64; 2]> = layers.iter().map(|&layer| DOTS[layer - 1]).collect();
+                            crossed(hatch.pitch, spacing, (size, hatch.pen), &places)
+                        }
+                        _ => 0.0,
+                    },
                     _ => (share(kind, gain) * layers.len() as f64).min(1.0),
                 };
                 bare = before * (1.0 - inked * held_by(&layers)).clamp(0.0, 1.0);
@@ -162,18 +169,33 @@ fn dotted(pitch: Length, spacing: Length, radius: Length, places: &[[f64; 2]]) -
     if radius >= (pitch * pitch + spacing * spacing).sqrt() {
         return 1.0;
     }
+    sampled([spacing, pitch], places, |x, y| x * x + y * y <= radius * radius)
+}
+
+/// The share that crosses with arms of a length and a width cover which stand at some places of a field of `pitch` by
+/// `spacing`.
+fn crossed(pitch: Length, spacing: Length, (size, pen): (Length, Length), places: &[[f64; 2]]) -> f64 {
+    let (half, wide) = (size.to_mm() / 2.0, pen.to_mm() / 2.0);
+    sampled([spacing.to_mm(), pitch.to_mm()], places, |x, y| {
+        let (x, y) = (x.abs(), y.abs());
+        (x <= half && y <= wide) || (x <= wide && y <= half)
+    })
+}
+
+/// The share of a field that marks cover which stand at some places of each of its meshes; `is_inked` sees the way from the
+/// middle of the nearest mark.
+fn sampled([along, across]: [f64; 2], places: &[[f64; 2]], is_inked: impl Fn(f64, f64) -> bool) -> f64 {
     let side = f64::from(SAMPLES);
     let sample = |i: u32| (f64::from(i) + 0.5) / side;
-    let is_inked = |u: f64, v: f64| {
-        places.iter().any(|[along, across]| {
-            // Of a dot's images the nearest in each direction counts.
+    let is_covered = |u: f64, v: f64| {
+        places.iter().any(|[x, y]| {
+            // Of a mark's images the nearest in each direction counts.
             let off = |at: f64, step: f64| (at - at.round()) * step;
-            let (x, y) = (off(u - along, spacing), off(v - across, pitch));
-            x * x + y * y <= radius * radius
+            is_inked(off(u - x, along), off(v - y, across))
         })
     };
-    let inked = (0..SAMPLES).flat_map(|j| (0..SAMPLES).map(move |i| (i, j)));
-    inked.filter(|&(i, j)| is_inked(sample(i), sample(j))).count() as f64 / (side * side)
+    let covered = (0..SAMPLES).flat_map(|j| (0..SAMPLES).map(move |i| (i, j)));
+    covered.filter(|&(i, j)| is_covered(sample(i), sample(j))).count() as f64 / (side * side)
 }
 
 #[cfg(test)]

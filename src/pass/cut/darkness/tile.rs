@@ -187,8 +187,18 @@ impl<'a> Reckoner<'a> {
                 let is_few = self.yard_area(tile) < FINE * FINE * area;
                 part * if is_few { self.dots(tile, number, hatch, *spacing, *radius) / held } else { 1.0 }
             }
-            // A row of them, or an arc, is cut anywhere.
-            FillKind::Dots { .. } | FillKind::Crosses { .. } | FillKind::Motif { .. } | FillKind::Arcs(_) => part,
+            // One arc goes through the site, however few there are.
+            FillKind::Arcs(hatch) => {
+                let arcs = (self.yard_area(tile) / PI).sqrt() / hatch.pitch.to_mm();
+                if arcs < LEAST { 0.0 } else { part }
+            }
+            // A row of them is cut anywhere.
+            FillKind::Dots { hatch, spacing, .. }
+            | FillKind::Crosses { hatch, spacing, .. }
+            | FillKind::Motif { hatch, spacing, .. } => {
+                let marks = share * self.yard_area(tile) / (hatch.pitch.to_mm() * spacing.to_mm());
+                if marks < LEAST { 0.0 } else { part }
+            }
             FillKind::Solid => f64::from(u8::from(share >= LEAST)),
         }
     }
