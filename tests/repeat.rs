@@ -19,7 +19,11 @@ const PLACEMENTS: [&str; 9] = [
     "hex(spacing: 3.2mm)",
     "triangles(edge: 4mm)",
     "relaxed(poisson(radius: 3mm), rounds: 2)",
-    "points([(1mm, 1mm), (19mm, 11mm), (-4mm, 7mm), (10mm, 30mm), (6mm, 6mm), (15mm, 3mm)])",
+    "points([
+       (1mm, 1mm), (19mm, 11mm), (-4mm, 7mm), (10mm, 30mm), (6mm, 6mm), (15mm, 3mm), (4mm, 3mm), (8mm, 1mm),
+       (12mm, 2mm), (18mm, 6mm), (2mm, 9mm), (5mm, 11mm), (9mm, 9mm), (13mm, 7mm), (14mm, 11mm), (17mm, 1mm),
+       (10mm, 5mm), (0mm, 4mm), (7mm, 8mm), (12mm, 10mm), (1mm, 12mm), (3mm, 6mm), (19mm, 8mm), (16mm, 9mm),
+     ])",
 ];
 const SHAPES: [&str; 7] = [
     "rect()",

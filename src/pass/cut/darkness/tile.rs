@@ -102,6 +102,7 @@ impl<'a> Reckoner<'a> {
         let Some(&above) = levels.get(full + 1) else { return (Layers::new(full as u8, 0.0), levels[full]) };
         let room = above - levels[full];
         let part = if room > NEAR { (wanted - levels[full]).max(0.0) / room } else { 0.0 };
+        let part = self.density(full as u8 + 1, part);
         if full > 0
             && part > NEAR
             && part < FEWEST
@@ -118,12 +119,9 @@ impl<'a> Reckoner<'a> {
     /// comes with its fewest strokes, and the last full layer makes room for them.
     fn crossed(&mut self, tile: usize, full: usize, wanted: f64) -> Option<(Layers, f64)> {
         let is_stroked = |number: usize| match self.kind(number as u8) {
-            FillKind::Lines(_)
-            | FillKind::Dashes { .. }
-            | FillKind::Waves { .. }
-            | FillKind::Scribble { .. }
-            | FillKind::Nawaami { .. } => true,
+            FillKind::Lines(_) | FillKind::Dashes { .. } | FillKind::Waves { .. } | FillKind::Nawaami { .. } => true,
             FillKind::Arcs(_)
+            | FillKind::Scribble { .. }
             | FillKind::Dots { .. }
             | FillKind::Crosses { .. }
             | FillKind::Motif { .. }
@@ -172,6 +170,46 @@ impl<'a> Reckoner<'a> {
         self.levels[full] + (above - self.levels[full]) * drawn
     }
 
+    /// How densely a layer stands that has a share of the ink of a full one: loops of scribble that stand farther apart lie
+    /// less on each other.
+    fn density(&self, number: u8, share: f64) -> f64 {
+        match self.kind(number) {
+            kind @ FillKind::Scribble { .. } => {
+                let full = ink::share(kind, self.bed.canvas.gain);
+                // A full layer covers 1 - exp(-n) of the paper with n times its area of ink.
+                if full > 0.0 && full < 1.0 { libm::log(1.0 - share * full) / libm::log(1.0 - full) } else { share }
+            }
+            FillKind::Lines(_)
+            | FillKind::Dashes { .. }
+            | FillKind::Dots { .. }
+            | FillKind::Crosses { .. }
+            | FillKind::Arcs(_)
+            | FillKind::Waves { .. }
+            | FillKind::Nawaami { .. }
+            | FillKind::Motif { .. }
+            | FillKind::Solid => share,
+        }
+    }
+
+    /// What of the ink of a full layer a layer of this density has, the other way round.
+    fn inked(&self, number: u8, density: f64) -> f64 {
+        match self.kind(number) {
+            kind @ FillKind::Scribble { .. } => {
+                let full = ink::share(kind, self.bed.canvas.gain);
+                if full > 0.0 && full < 1.0 { (1.0 - libm::pow(1.0 - full, density)) / full } else { density }
+            }
+            FillKind::Lines(_)
+            | FillKind::Dashes { .. }
+            | FillKind::Dots { .. }
+            | FillKind::Crosses { .. }
+            | FillKind::Arcs(_)
+            | FillKind::Waves { .. }
+            | FillKind::Nawaami { .. }
+            | FillKind::Motif { .. }
+            | FillKind::Solid => density,
+        }
+    }
+
     /// What of a full layer is drawn in a tile if it is thinned to `part`: about that much, but in whole lines or dots.
     fn drawn(&mut self, tile: usize, number: u8, part: f64) -> f64 {
         let held = self.held[usize::from(number) - 1];
@@ -181,7 +219,7 @@ impl<'a> Reckoner<'a> {
             | FillKind::Dashes { hatch, .. }
             | FillKind::Waves { hatch, .. }
             | FillKind::Scribble { hatch, .. }
-            | FillKind::Nawaami { hatch, .. } => part * self.lines(tile, number, hatch) / held,
+            | FillKind::Nawaami { hatch, .. } => self.inked(number, part) * self.lines(tile, number, hatch) / held,
             FillKind::Dots { hatch, spacing, radius } if number == 1 => {
                 let area = hatch.pitch.to_mm() * spacing.to_mm();
                 let is_few = self.yard_area(tile) < FINE * FINE * area;
