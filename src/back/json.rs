@@ -1,6 +1,6 @@
 //! The drawing as JSON: layers of strokes, dots and areas in millimetres at full precision.
 //!
-//! Every stroke has `points`, also a curved one, for which they are lines within [`FLATTENING`] of it and `curve` has its
+//! Every stroke has `points`, also a curved one, for which they are lines within 0.005 mm of it and `curve` has its
 //! Béziers. A stroke that changes its width has `widths` at the joints of its `curve`, and its greatest as `pen`. All is written as it is walked, so that a large drawing is never held as text.
 
 use std::borrow::Cow;

@@ -1,7 +1,7 @@
 //! Floods: a drawing's lines and a point come in, the area that paint poured out there would fill goes out.
 //!
 //! It ends at the centres of lines and at the outlines of dark areas, under which it reaches by [`UNDER`]. Gaps up to a
-//! width are bridged first ([`gaps`]): from every open end to the nearest other end and to the nearest line. Closed lines
+//! width are bridged first (`gaps`): from every open end to the nearest other end and to the nearest line. Closed lines
 //! inside are holes; lines that end inside leave no slit.
 //!
 //! The page is cut by walls a hair's breadth thick along all lines and bridges, and the piece that holds the point is

@@ -1,5 +1,5 @@
 //! SVG files: bytes come in; the outlines of what is filled go out, the marks as they are drawn ([`ink`]), or the lines
-//! that a flood runs up against ([`lines`]).
+//! that a flood runs up against (`lines`).
 //!
 //! All stand where the file shows them: after transforms, units, `use` and clip paths, by each path's fill rule. Text,
 //! images, masks and filters play no part, and what is hidden is left out. Nothing but the bytes is read: no pictures,
