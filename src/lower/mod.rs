@@ -16,6 +16,7 @@ mod eval;
 mod experiment;
 mod files;
 mod function;
+mod ground;
 mod library;
 mod modules;
 mod names;

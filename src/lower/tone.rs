@@ -17,7 +17,7 @@ use super::cx::Cx;
 use super::modules::Tone;
 use super::scope::Scope;
 use super::value::{FieldUnit, Kind, TypedField, Value};
-use super::{eval, function, names};
+use super::{eval, function, ground, names};
 
 /// A tone with its properties as far as they are given.
 #[derive(Debug, Clone)]
@@ -55,7 +55,7 @@ const PROPERTIES: [(&str, Slot); 17] = [
     ("blend", Slot::words(&["step", "partial", "dither", "contour"])),
     ("stack", Slot::words(&["cover", "through"])),
     ("over", Slot::words(&["print", "knockout"])),
-    ("ground", Slot::or_words(Kind::Fill, &["nearest"])),
+    ("ground", Slot::or_words(Kind::Fill, &["nearest", "none"])),
     ("edge", Slot::words(&["clip", "whole", "centre"])),
     ("hand", Slot::of(Kind::Hand)),
 ];
@@ -416,7 +416,7 @@ impl ToneValue {
             Some(Given { value: Value::Hand(hand), span, .. }) => (*hand, *span),
             _ => (Hand::RULED, span),
         };
-        Some(SceneTone {
+        let mut tone = SceneTone {
             place: (**placement).clone(),
             place_span: place.span,
             domain: match self.word("domain") {
@@ -469,7 +469,11 @@ impl ToneValue {
             },
             hand,
             hand_span,
-        })
+        };
+        if self.get("ground").is_none() {
+            tone.ground = ground::default(&tone);
+        }
+        Some(tone)
     }
 
     /// What is asked for, and where.
@@ -543,7 +547,7 @@ impl ToneValue {
     fn ground(&self) -> Option<Ground> {
         match &self.get("ground")?.value {
             Value::Fill(fill) => Some(Ground::Fill { fill: (**fill).clone(), angle: Angle::degrees(GROUND_DEGREES) }),
-            Value::Word(_) => Some(Ground::Nearest),
+            Value::Word("nearest") => Some(Ground::Nearest),
             _ => None,
         }
     }
