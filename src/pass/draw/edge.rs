@@ -183,9 +183,14 @@ mod tests {
                 if kept.iter().any(|&(from, to)| (u - from).abs() < 1e-3 || (u - to).abs() < 1e-3) {
                     continue;
                 }
-                let across = Rect::new(Point::new(u, -0.49999), Point::new(u, 0.49999));
-                let is_inside = region.contains(Point::new(u, 0.0)) && !region.touches_outline(across);
-                prop_assert!(is_kept == is_inside, "{} {:?}", u, kept);
+                let is_inside = |half: f64| {
+                    let across = Rect::new(Point::new(u, -half), Point::new(u, half));
+                    region.contains(Point::new(u, 0.0)) && !region.touches_outline(across)
+                };
+                // Where the outline comes as near as that to the stroke's edge, it may count as touching it.
+                if is_inside(0.49999) == is_inside(0.50001) {
+                    prop_assert!(is_kept == is_inside(0.5), "{} {:?}", u, kept);
+                }
             }
         }
     }
