@@ -173,30 +173,20 @@ impl<'a> Reckoner<'a> {
     /// How densely a layer stands that has a share of the ink of a full one: loops of scribble that stand farther apart lie
     /// less on each other.
     fn density(&self, number: u8, share: f64) -> f64 {
-        match self.kind(number) {
-            kind @ FillKind::Scribble { .. } => {
-                let full = ink::share(kind, self.bed.canvas.gain);
-                // A full layer covers 1 - exp(-n) of the paper with n times its area of ink.
-                if full > 0.0 && full < 1.0 { libm::log(1.0 - share * full) / libm::log(1.0 - full) } else { share }
-            }
-            FillKind::Lines(_)
-            | FillKind::Dashes { .. }
-            | FillKind::Dots { .. }
-            | FillKind::Crosses { .. }
-            | FillKind::Arcs(_)
-            | FillKind::Waves { .. }
-            | FillKind::Nawaami { .. }
-            | FillKind::Motif { .. }
-            | FillKind::Solid => share,
-        }
+        // A full layer covers 1 - exp(-n) of the paper with n times its area of ink.
+        self.heaped(number).map_or(share, |full| libm::log(1.0 - share * full) / libm::log(1.0 - full))
     }
 
     /// What of the ink of a full layer a layer of this density has, the other way round.
     fn inked(&self, number: u8, density: f64) -> f64 {
+        self.heaped(number).map_or(density, |full| (1.0 - libm::pow(1.0 - full, density)) / full)
+    }
+
+    /// The share of the paper that a full layer covers whose own marks lie on each other by chance; none for other fills.
+    fn heaped(&self, number: u8) -> Option<f64> {
         match self.kind(number) {
             kind @ FillKind::Scribble { .. } => {
-                let full = ink::share(kind, self.bed.canvas.gain);
-                if full > 0.0 && full < 1.0 { (1.0 - libm::pow(1.0 - full, density)) / full } else { density }
+                Some(ink::share(kind, self.bed.canvas.gain)).filter(|&full| full > 0.0 && full < 1.0)
             }
             FillKind::Lines(_)
             | FillKind::Dashes { .. }
@@ -206,7 +196,7 @@ impl<'a> Reckoner<'a> {
             | FillKind::Waves { .. }
             | FillKind::Nawaami { .. }
             | FillKind::Motif { .. }
-            | FillKind::Solid => density,
+            | FillKind::Solid => None,
         }
     }
 
