@@ -32,6 +32,7 @@ pub mod field;
 pub mod geom;
 pub mod loader;
 pub mod lower;
+pub mod metrics;
 pub mod pass;
 pub mod random;
 pub mod region;

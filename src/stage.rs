@@ -247,6 +247,12 @@ impl Layers {
         Self { full, part, last: 1.0, is_solid: false }
     }
 
+    /// How many layers of strokes are seen, a thin last one included; none where all is ink.
+    #[must_use]
+    pub fn seen(self) -> u8 {
+        if self.is_solid { 0 } else { self.full + u8::from(self.part > 0.0) }
+    }
+
     /// Whether nothing is drawn and nothing hidden.
     #[must_use]
     pub fn is_blank(self) -> bool {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::support::here;
 
 /// What each part may know of.
-const ARROWS: [(&str, &[&str]); 16] = [
+const ARROWS: [(&str, &[&str]); 17] = [
     ("span", &[]),
     ("geom", &[]),
     ("random", &[]),
@@ -20,6 +20,7 @@ const ARROWS: [(&str, &[&str]); 16] = [
     ("stage", &["geom"]),
     ("drawing", &["geom", "scene"]),
     ("pass", &["scene", "stage", "geom", "region", "field", "random", "diag", "span", "drawing"]),
+    ("metrics", &["pass", "stage", "scene", "region", "geom", "random"]),
     ("back", &["drawing", "geom", "scene"]),
     ("lower", &["syntax", "scene", "region", "field", "loader", "diag", "span", "geom", "random"]),
     (

@@ -14,6 +14,9 @@ use super::Vec2;
 #[serde(transparent)]
 pub struct Angle(f64);
 
+/// How layers are turned against their tile, in eighths of a turn.
+const LAYER_TURNS: [f64; 4] = [0.0, 2.0, 1.0, 3.0];
+
 impl Angle {
     /// Along +x.
     pub const ZERO: Self = Self(0.0);
@@ -51,6 +54,16 @@ impl Angle {
     pub fn rp1_distance(self, other: Self) -> Self {
         let difference = (self.0 - other.0).abs() % PI;
         Self(difference.min(PI - difference))
+    }
+
+    /// The least RP1 distance between any direction of a tile of so many layers turned by this angle and any of a tile
+    /// turned by the other: layers are turned by 0, 90, 45 and 135 degrees against their tile. None where a tile has no
+    /// layer and so no direction; what is beyond four layers is not looked at.
+    #[must_use]
+    pub fn layered_distance(self, layers: u8, other: Self, other_layers: u8) -> Option<Self> {
+        let turns = |layers: u8| LAYER_TURNS.into_iter().take(usize::from(layers)).map(|turn| turn * (PI / 4.0));
+        let pairs = turns(layers).flat_map(|a| turns(other_layers).map(move |b| (a, b)));
+        pairs.map(|(a, b)| Self(self.0 + a).rp1_distance(Self(other.0 + b))).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// Sine and cosine, the same on every machine.

@@ -1,0 +1,96 @@
+//! Measures of a pattern.
+//!
+//! In: what the passes found for a paint, as [`Measured`], the tiles whose sites lie in the region and the links among
+//! them. Out: [`Measures`]. A family of measures is one file here, one struct of named figures, and one line in
+//! [`Measures`]; the names are those that tables, JSON and experiments print.
+
+pub mod contrast;
+pub mod diversity;
+mod measured;
+
+use std::borrow::Cow;
+
+use serde::Serialize;
+
+pub use measured::Measured;
+
+/// The single figures of a family by their names, in the order in which tables show them. What cannot be said of a
+/// pattern, such as the contrast of a pattern without links where it is a share of something, is `None`.
+pub type Scalars = Vec<(Cow<'static, str>, Option<f64>)>;
+
+/// All that is measured of one paint.
+#[derive(Debug, Clone, Serialize)]
+pub struct Measures {
+    /// How many tiles are measured.
+    pub tiles: usize,
+    /// How many links there are among them.
+    pub edges: usize,
+    /// How far neighbours are turned against each other.
+    #[serde(flatten)]
+    pub contrast: contrast::Contrast,
+    /// How many directions there are.
+    #[serde(flatten)]
+    pub diversity: diversity::Diversity,
+}
+
+impl Measures {
+    /// Measures a pattern.
+    #[must_use]
+    pub fn new(measured: &Measured) -> Self {
+        Self {
+            tiles: measured.sites.len(),
+            edges: measured.graph.edges().count(),
+            contrast: contrast::measure(measured),
+            diversity: diversity::measure(measured),
+        }
+    }
+
+    /// Every single figure by its name.
+    #[must_use]
+    pub fn scalars(&self) -> Scalars {
+        let mut scalars: Scalars =
+            vec![("tiles".into(), Some(self.tiles as f64)), ("edges".into(), Some(self.edges as f64))];
+        scalars.extend(self.contrast.scalars());
+        scalars.extend(self.diversity.scalars());
+        scalars
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::geom::Angle;
+    use crate::pass::draw::Stages;
+    use crate::pass::fixture::{canvas, paint};
+    use crate::pass::{cut, link, place, turn};
+    use crate::scene::{AngleRule, GridSize, Limits, Placement};
+
+    #[test]
+    fn a_checkerboard_measures_as_reported() {
+        let canvas = canvas(6.0, 6.0);
+        let grid = Placement::Grid(GridSize::Cells { columns: 8, rows: 8 });
+        let paint = paint(&canvas, grid, AngleRule::Checkerboard);
+        let sites = place::place(&paint, &canvas, &Limits::default()).unwrap();
+        let graph = link::link(&sites, paint.tone.link);
+        let angles = turn::turn(&paint, &sites, &graph);
+        let tiles = cut::cut(&paint, &canvas, &sites, &graph, &angles, &mut Vec::new());
+        let stages = Stages { sites: &sites, graph: &graph, angles: &angles, tiles: &tiles };
+        let measures = Measures::new(&Measured::new(&paint, &stages));
+        assert_eq!((measures.tiles, measures.edges), (64, 161));
+        assert!((measures.contrast.e_contrast - 112.0 / 161.0).abs() < 1e-12);
+        assert!((measures.diversity.h_angle - 2.0_f64.ln() / 12.0_f64.ln()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_nearest_layers_count() {
+        let [a, b] = [0.0, 80.0].map(Angle::degrees);
+        let distance = |m, n| a.layered_distance(m, b, n).map(|d| d.to_radians().to_degrees().round());
+        assert_eq!(distance(1, 1), Some(80.0));
+        assert_eq!(distance(2, 1), Some(10.0));
+        assert_eq!(distance(3, 1), Some(10.0));
+        assert_eq!(distance(4, 4), Some(10.0));
+        assert_eq!(distance(3, 3), Some(10.0));
+        assert_eq!(distance(0, 4), None);
+    }
+}
