@@ -79,7 +79,7 @@ mod tests {
         let measures = Measures::new(&Measured::new(&paint, &stages));
         assert_eq!((measures.tiles, measures.edges), (64, 161));
         assert!((measures.contrast.e_contrast - 112.0 / 161.0).abs() < 1e-12);
-        assert!((measures.diversity.h_angle - 2.0_f64.ln() / 12.0_f64.ln()).abs() < 1e-12);
+        assert!((measures.diversity.h_angle - libm::log(2.0) / libm::log(12.0)).abs() < 1e-12);
     }
 
     #[test]
