@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::support::here;
 
 /// What each part may know of.
-const ARROWS: [(&str, &[&str]); 17] = [
+const ARROWS: [(&str, &[&str]); 18] = [
     ("span", &[]),
     ("geom", &[]),
     ("random", &[]),
@@ -21,6 +21,7 @@ const ARROWS: [(&str, &[&str]); 17] = [
     ("drawing", &["geom", "scene"]),
     ("pass", &["scene", "stage", "geom", "region", "field", "random", "diag", "span", "drawing"]),
     ("metrics", &["pass", "stage", "scene", "region", "geom", "random"]),
+    ("overlay", &["drawing", "geom", "metrics", "pass", "region", "scene"]),
     ("back", &["drawing", "geom", "scene"]),
     ("lower", &["syntax", "scene", "region", "field", "loader", "diag", "span", "geom", "random"]),
     (
@@ -30,8 +31,8 @@ const ARROWS: [(&str, &[&str]); 17] = [
     (
         "cli",
         &[
-            "back", "diag", "drawing", "field", "geom", "loader", "lower", "pass", "random", "region", "scene", "span",
-            "stage", "syntax", "wedge",
+            "back", "diag", "drawing", "field", "geom", "loader", "lower", "overlay", "pass", "random", "region", "scene",
+            "span", "stage", "syntax", "wedge",
         ],
     ),
 ];
