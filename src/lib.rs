@@ -189,7 +189,7 @@ fn draw(
         }
     }
     if let Some(span) = last
-        && let Err(diagnostic) = assembly.on_top(overlay::layers(&config.overlays, &patterns), span)
+        && let Err(diagnostic) = assembly.on_top(overlay::layers(&config.overlays, &patterns, canvas), span)
     {
         diagnostics.push(diagnostic);
         whole = false;

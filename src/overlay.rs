@@ -2,7 +2,8 @@
 //!
 //! In: what the passes found for a paint. Out: layers of a drawing, so that every back end shows them, one group for each
 //! overlay. They show what is measured: the tiles whose sites lie in the region, and the links among them. Widths follow
-//! the spacing of the tiles. Nothing below an overlay is changed.
+//! the spacing of the tiles. What lies below them only
+//! pales.
 
 mod colours;
 
@@ -63,6 +64,9 @@ impl Overlay {
 /// How opaque fills are.
 const FILL: u8 = 165;
 
+/// The white between the picture and what is shown on it.
+const VEIL: Colour = Colour { r: 255, g: 255, b: 255, a: 115 };
+
 /// How opaque the white below a line is, which lifts it off the pattern.
 const HALO: Colour = Colour { r: 255, g: 255, b: 255, a: 215 };
 
@@ -87,6 +91,9 @@ const SHADES: u32 = 36;
 
 /// Ink of lines.
 const LINE: Colour = Colour { r: 20, g: 40, b: 75, a: 255 };
+
+/// Ink of cells.
+const CELL: Colour = Colour { r: 0, g: 125, b: 95, a: 255 };
 
 /// Ink of sites.
 const DOT: Colour = Colour { r: 200, g: 30, b: 90, a: 255 };
@@ -138,7 +145,7 @@ impl Pattern {
                 layers.extend(self.haloed(vec![(BAR[0], LINE, self.bars())]));
                 layers
             }
-            Overlay::Cells => vec![self.outlined()],
+            Overlay::Cells => self.outlined(),
             Overlay::Graph => {
                 let links = self.measured.graph.edges().map(|edge| self.link(edge)).collect();
                 self.haloed(vec![(HAIR, LINE, links)])
@@ -208,12 +215,14 @@ impl Pattern {
         [a, self.measured.period.map_or(b, |period| a + period.shortest(b - a))]
     }
 
-    fn outlined(&self) -> Layer {
+    fn outlined(&self) -> Vec<Layer> {
         let rings = self.cells.iter().flatten().flatten();
-        let polylines = rings.map(|ring| ring.iter().chain(ring.first()).copied().collect()).collect();
-        let mut layer = self.layer(LINE);
-        layer.strokes.push(Strokes { polylines, ..Strokes::new(self.width(HAIR), Cap::Round) });
-        layer
+        let polylines: Vec<Vec<Point>> = rings.map(|ring| ring.iter().chain(ring.first()).copied().collect()).collect();
+        let layer = |ink: Colour, spacings: f64| {
+            let strokes = Strokes::new(self.width(spacings), Cap::Round);
+            Layer { strokes: vec![Strokes { polylines: polylines.clone(), ..strokes }], ..self.layer(ink) }
+        };
+        vec![layer(HALO, HAIR + 2.0 * MARGIN), layer(CELL, HAIR)]
     }
 
     fn dotted(&self) -> Layer {
@@ -233,11 +242,15 @@ impl Pattern {
     }
 }
 
-/// The overlays of all patterns on top of each other: every fill below every line, whatever paint it belongs to.
+/// The overlays of all patterns on top of each other: every fill below every line, whatever paint it belongs to, and below
+/// all of them a veil over the canvas, so that they stand out from the picture.
 #[must_use]
-pub fn layers(overlays: &[Overlay], patterns: &[Pattern]) -> Vec<Layer> {
+pub fn layers(overlays: &[Overlay], patterns: &[Pattern], canvas: &Canvas) -> Vec<Layer> {
+    let sheet = canvas.bounds().corners().to_vec();
+    let veil = Layer { areas: vec![vec![sheet]], ..Layer::new(Vec::new(), "overlay veil".to_owned(), VEIL) };
     let shown = Overlay::ALL.into_iter().filter(|overlay| overlays.contains(overlay));
-    shown.flat_map(|overlay| patterns.iter().flat_map(move |pattern| pattern.layers(overlay))).collect()
+    let shown = shown.flat_map(|overlay| patterns.iter().flat_map(move |pattern| pattern.layers(overlay)));
+    std::iter::once(veil).chain(shown).collect()
 }
 
 /// The nearest of the shades of a map, 0 to [`SHADES`].

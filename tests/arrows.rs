@@ -31,8 +31,8 @@ const ARROWS: [(&str, &[&str]); 18] = [
     (
         "cli",
         &[
-            "back", "diag", "drawing", "field", "geom", "loader", "lower", "overlay", "pass", "random", "region", "scene",
-            "span", "stage", "syntax", "wedge",
+            "back", "diag", "drawing", "field", "geom", "loader", "lower", "overlay", "pass", "random", "region",
+            "scene", "span", "stage", "syntax", "wedge",
         ],
     ),
 ];

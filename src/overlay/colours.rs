@@ -20,8 +20,9 @@ const K: Gradient = colorous::YELLOW_GREEN_BLUE;
 /// Which part of the gradient is used: its palest colours are lost on paper.
 const K_FROM: f64 = 0.12;
 
-/// From equal neighbours to crossed ones; readable without telling red from green.
-const CONTRAST: Gradient = colorous::RED_YELLOW_BLUE;
+/// From equal neighbours, a glaring red, over a grey that recedes to crossed ones, a blue; in OKLab, and readable without
+/// telling red from green.
+const CONTRAST: [[f64; 3]; 3] = [[0.6, 0.2, 0.11], [0.68, 0.02, 0.03], [0.5, -0.04, -0.16]];
 
 /// The colour of a direction: once round the hues within half a turn, all equally light and vivid (OKLab, Ottosson
 /// 2020), so that equal differences of direction look equally different and directions at right angles have opposite
@@ -36,17 +37,16 @@ pub(super) fn direction(angle: Angle) -> Colour {
 /// The colour of so many layers, 0 to 4.
 #[must_use]
 pub(super) fn layers(k: f64) -> Colour {
-    opaque(K.eval_continuous(K_FROM + (1.0 - K_FROM) * (k / 4.0).clamp(0.0, 1.0)))
-}
-
-/// The colour of a contrast from 0, a red, over a yellow to 1, a blue.
-#[must_use]
-pub(super) fn contrast(contrast: f64) -> Colour {
-    opaque(CONTRAST.eval_continuous(contrast.clamp(0.0, 1.0)))
-}
-
-fn opaque(Color { r, g, b }: Color) -> Colour {
+    let Color { r, g, b } = K.eval_continuous(K_FROM + (1.0 - K_FROM) * (k / 4.0).clamp(0.0, 1.0));
     Colour { r, g, b, a: 255 }
+}
+
+/// The colour of a contrast from 0 to 1.
+pub(super) fn contrast(contrast: f64) -> Colour {
+    let [equal, half, crossed] = CONTRAST;
+    let place = contrast.clamp(0.0, 1.0) * 2.0;
+    let (from, to, share) = if place < 1.0 { (equal, half, place) } else { (half, crossed, place - 1.0) };
+    oklab([0, 1, 2].map(|i| from[i] + (to[i] - from[i]) * share))
 }
 
 /// From OKLab to sRGB; what lies outside is moved to its border channel by channel.
@@ -57,8 +57,7 @@ fn oklab([lightness, a, b]: [f64; 3]) -> Colour {
     let s = cube(lightness - 0.089_484_177_5 * a - 1.291_485_548_0 * b);
     let channel = |linear: f64| {
         let linear = linear.clamp(0.0, 1.0);
-        let value =
-            if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055 };
+        let value = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055 };
         (value * 255.0).round() as u8
     };
     Colour {
