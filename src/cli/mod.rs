@@ -100,7 +100,7 @@ struct SceneArgs {
     /// The folder whose files the scene may read
     #[arg(long, value_name = "DIR")]
     root: Option<PathBuf>,
-    /// Lift a limit: tiles, strokes, iterations, megapixels or nesting
+    /// Lift a limit: tiles, strokes, iterations, megapixels, nesting or runs
     #[arg(long, value_name = "NAME=N", value_parser = limits::parse_limit)]
     limit: Vec<(limits::Limit, u64)>,
 }
