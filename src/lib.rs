@@ -28,6 +28,7 @@ pub mod back;
 pub mod cli;
 pub mod diag;
 pub mod drawing;
+pub mod experiment;
 pub mod field;
 pub mod geom;
 pub mod loader;
@@ -39,6 +40,7 @@ pub mod region;
 pub mod scene;
 pub mod span;
 pub mod stage;
+pub mod stats;
 pub mod syntax;
 pub mod wedge;
 

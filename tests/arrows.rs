@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::support::here;
 
 /// What each part may know of.
-const ARROWS: [(&str, &[&str]); 17] = [
+const ARROWS: [(&str, &[&str]); 19] = [
     ("span", &[]),
     ("geom", &[]),
     ("random", &[]),
@@ -21,17 +21,33 @@ const ARROWS: [(&str, &[&str]); 17] = [
     ("drawing", &["geom", "scene"]),
     ("pass", &["scene", "stage", "geom", "region", "field", "random", "diag", "span", "drawing"]),
     ("metrics", &["pass", "stage", "scene", "region", "geom", "random"]),
+    ("stats", &[]),
     ("back", &["drawing", "geom", "scene"]),
     ("lower", &["syntax", "scene", "region", "field", "loader", "diag", "span", "geom", "random"]),
     (
         "wedge",
         &["back", "diag", "drawing", "field", "geom", "loader", "lower", "pass", "region", "scene", "span", "syntax"],
     ),
+    ("experiment", &["back", "diag", "loader", "lower", "metrics", "scene", "span", "stats"]),
     (
         "cli",
         &[
-            "back", "diag", "drawing", "field", "geom", "loader", "lower", "pass", "random", "region", "scene", "span",
-            "stage", "syntax", "wedge",
+            "back",
+            "diag",
+            "drawing",
+            "experiment",
+            "field",
+            "geom",
+            "loader",
+            "lower",
+            "pass",
+            "random",
+            "region",
+            "scene",
+            "span",
+            "stage",
+            "syntax",
+            "wedge",
         ],
     ),
 ];

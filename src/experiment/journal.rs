@@ -86,7 +86,11 @@ pub fn entry(done: &Done) -> serde_json::Result<String> {
         Err(words) => (Some(words.clone()), Vec::new()),
         Ok(paints) => {
             let figures = |paint: &PaintFigures| {
-                paint.figures.iter().map(|(name, value)| (name.clone(), value.map(|value| format!("{value:?}")))).collect()
+                paint
+                    .figures
+                    .iter()
+                    .map(|(name, value)| (name.clone(), value.map(|value| format!("{value:?}"))))
+                    .collect()
             };
             (None, paints.iter().map(|paint| Paint { paint: paint.paint.clone(), figures: figures(paint) }).collect())
         }
@@ -101,13 +105,12 @@ impl Journal {
         let mut lines = bytes.split_inclusive(|&byte| byte == b'\n');
         let first = lines.next()?;
         let head: Head<Recipe> = serde_json::from_str(checked(text(first)?)?).ok()?;
-        let mut journal = Self {
-            recipe: head.recipe,
-            shard: head.shard,
-            done: BTreeMap::new(),
-            whole: first.len(),
-            damaged: 0,
-        };
+        let Shard { index, of } = head.shard;
+        if index == 0 || index > of || head.recipe.seeds.is_some_and(|[first, last]| first > last) {
+            return None;
+        }
+        let mut journal =
+            Self { recipe: head.recipe, shard: head.shard, done: BTreeMap::new(), whole: first.len(), damaged: 0 };
         for line in lines {
             match text(line).and_then(checked).and_then(parse) {
                 Some(done) => {

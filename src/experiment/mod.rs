@@ -21,8 +21,8 @@ mod tests;
 
 pub use journal::{Journal, entry, head};
 pub use made::{command, made};
-pub use outcome::{Analysis, Failure, Outcome, Run};
-pub use picture::{Picture, pictures};
+pub use outcome::{ALPHA, Analysis, CONTRAST, Failure, Outcome, Run};
+pub use picture::{Picture, count as picture_count, pictures};
 pub use plan::{Condition, Factor, ParamType, Plan, Setting};
 pub use recipe::{Bytes, Recipe, Recorder};
 pub use runner::{Done, PaintFigures, one, run};

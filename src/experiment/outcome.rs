@@ -84,9 +84,18 @@ pub struct Analysis {
 }
 
 impl Outcome {
-    /// Puts the runs of a plan together. A run that is there twice counts once.
+    /// Puts the runs of a plan together, with their statistics. A run that is there twice counts once.
     #[must_use]
     pub fn new(plan: Plan, done: impl IntoIterator<Item = Done>) -> Self {
+        let mut outcome = Self::of_runs(plan, done);
+        outcome.representatives = (0..outcome.plan.conditions.len()).map(|c| outcome.representative(c)).collect();
+        outcome.analyses = outcome.analyse();
+        outcome
+    }
+
+    /// Puts runs together, some of a plan's perhaps, without statistics.
+    #[must_use]
+    pub fn of_runs(plan: Plan, done: impl IntoIterator<Item = Done>) -> Self {
         let done: BTreeMap<usize, Done> = done.into_iter().map(|done| (done.run, done)).collect();
         let found = || done.values().filter_map(|done| done.found.as_ref().ok()).flatten();
         let mut paints = Names::default();
@@ -114,11 +123,7 @@ impl Outcome {
                 })),
             }
         }
-        let mut outcome =
-            Self { plan, paints, measures, runs, failures, analyses: Vec::new(), representatives: Vec::new() };
-        outcome.representatives = (0..outcome.plan.conditions.len()).map(|c| outcome.representative(c)).collect();
-        outcome.analyses = outcome.analyse();
-        outcome
+        Self { plan, paints, measures, runs, failures, analyses: Vec::new(), representatives: Vec::new() }
     }
 
     /// Where a measure stands among the measures.
@@ -139,10 +144,8 @@ impl Outcome {
         let mut runs = self.runs.iter().filter(|run| run.condition == condition).peekable();
         let paint = runs.peek()?.paint;
         let contrast = self.measure(CONTRAST)?;
-        let runs: Vec<(u64, f64)> = runs
-            .filter(|run| run.paint == paint)
-            .filter_map(|run| Some((run.seed, run.values[contrast]?)))
-            .collect();
+        let runs: Vec<(u64, f64)> =
+            runs.filter(|run| run.paint == paint).filter_map(|run| Some((run.seed, run.values[contrast]?))).collect();
         let median = stats::summary(&runs.iter().map(|&(_, value)| value).collect::<Vec<_>>())?.median;
         let mut best: Option<(u64, f64)> = None;
         for (seed, value) in runs {
@@ -192,8 +195,10 @@ impl Outcome {
                 .collect(),
         };
         let pairs = design.iter().enumerate().flat_map(|(i, &a)| design[i + 1..].iter().map(move |&b| (a, b)));
-        let groups: Vec<(String, Vec<f64>)> =
-            design.iter().map(|&condition| (plan.conditions[condition].name.clone(), values[condition].clone())).collect();
+        let groups: Vec<(String, Vec<f64>)> = design
+            .iter()
+            .map(|&condition| (plan.conditions[condition].name.clone(), values[condition].clone()))
+            .collect();
         Analysis {
             paint,
             measure,

@@ -13,8 +13,8 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::Type;
 
-use super::tables::PAINT;
 use super::Outcome;
+use super::tables::PAINT;
 
 /// Runs of one group of rows.
 const GROUP: usize = 1 << 16;
@@ -62,11 +62,14 @@ fn columns(outcome: &Outcome) -> Vec<(String, Column)> {
     let mut columns = Vec::new();
     for (i, param) in outcome.plan.params.iter().enumerate() {
         let labels = || runs.iter().map(|run| outcome.plan.conditions[run.condition].labels[i].clone());
-        columns.push((param.name.clone(), match param.ty.as_str() {
-            "number" => Column::Number(labels().map(|label| label.parse().ok()).collect()),
-            "bool" => Column::Bool(labels().map(|label| label == "true").collect()),
-            _ => Column::Text(labels().collect()),
-        }));
+        columns.push((
+            param.name.clone(),
+            match param.ty.as_str() {
+                "number" => Column::Number(labels().map(|label| label.parse().ok()).collect()),
+                "bool" => Column::Bool(labels().map(|label| label == "true").collect()),
+                _ => Column::Text(labels().collect()),
+            },
+        ));
     }
     columns.push(("seed".to_owned(), Column::Seed(runs.iter().map(|run| run.seed).collect())));
     if outcome.paints.len() > 1 {
@@ -75,10 +78,13 @@ fn columns(outcome: &Outcome) -> Vec<(String, Column)> {
     }
     for (i, measure) in outcome.measures.iter().enumerate() {
         let values = runs.iter().map(|run| run.values[i]);
-        columns.push((measure.clone(), match COUNTS.contains(&measure.as_str()) {
-            true => Column::Count(values.map(|value| value.map(|value| value as i64)).collect()),
-            false => Column::Number(values.collect()),
-        }));
+        columns.push((
+            measure.clone(),
+            match COUNTS.contains(&measure.as_str()) {
+                true => Column::Count(values.map(|value| value.map(|value| value as i64)).collect()),
+                false => Column::Number(values.collect()),
+            },
+        ));
     }
     columns
 }
@@ -90,7 +96,7 @@ impl Column {
             Self::Number(_) => (Physical::DOUBLE, None, Repetition::OPTIONAL),
             Self::Count(_) => (Physical::INT64, None, Repetition::OPTIONAL),
             Self::Seed(_) => {
-                let unsigned = LogicalType::Integer { bit_width: 64, is_signed: false };
+                let unsigned = LogicalType::integer(64, false);
                 (Physical::INT64, Some(unsigned), Repetition::REQUIRED)
             }
             Self::Bool(_) => (Physical::BOOLEAN, None, Repetition::REQUIRED),

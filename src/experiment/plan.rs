@@ -93,7 +93,10 @@ impl Plan {
             expression: expression(value, ty(name)),
         };
         let settings = |factors: &[crate::scene::Factor]| -> Vec<Vec<Setting>> {
-            factors.iter().map(|factor| factor.levels.iter().map(|value| setting(&factor.param, value)).collect()).collect()
+            factors
+                .iter()
+                .map(|factor| factor.levels.iter().map(|value| setting(&factor.param, value)).collect())
+                .collect()
         };
         let levels = settings(&experiment.factors);
         let mut names: Vec<&str> = experiment.factors.iter().map(|factor| factor.param.as_str()).collect();
@@ -108,7 +111,8 @@ impl Plan {
             names.iter().map(|name| given(name).or_else(|| kept(name)).unwrap_or_default()).collect()
         };
         let design = combinations(&levels).into_iter().map(|indices| {
-            let sets: Vec<Setting> = levels.iter().zip(&indices).map(|(levels, &level)| levels[level].clone()).collect();
+            let sets: Vec<Setting> =
+                levels.iter().zip(&indices).map(|(levels, &level)| levels[level].clone()).collect();
             Condition { name: String::new(), labels: labels(&sets), levels: Some(indices), sets }
         });
         let references = experiment.reference.iter().map(|reference| {
@@ -199,7 +203,8 @@ fn name(conditions: &mut [Condition], experiment: &str) {
     let mut taken: BTreeSet<String> = BTreeSet::new();
     for condition in conditions {
         let explains = |set: &Setting| set.expression.starts_with('"') && !set.label.is_empty();
-        let word = |set: &Setting| if explains(set) { set.label.clone() } else { format!("{} {}", set.param, set.label) };
+        let word =
+            |set: &Setting| if explains(set) { set.label.clone() } else { format!("{} {}", set.param, set.label) };
         let words: Vec<String> = condition.sets.iter().map(word).collect();
         let plain = if words.is_empty() { experiment.to_owned() } else { words.join(" + ") };
         let mut name = plain.clone();

@@ -51,7 +51,8 @@ fn summary(outcome: &Outcome) -> csv::Result<Vec<u8>> {
         for analysis in &outcome.analyses {
             let Some(summary) = &analysis.summaries[condition] else { continue };
             let Summary { n, mean, sd, min, q1, median, q3, max } = *summary;
-            let figures = [number(mean), optional(sd), number(min), number(q1), number(median), number(q3), number(max)];
+            let figures =
+                [number(mean), optional(sd), number(min), number(q1), number(median), number(q3), number(max)];
             let first = [outcome.measures[analysis.measure].clone(), n.to_string()];
             let names = [of.name.clone()].into_iter().chain(of.labels.iter().cloned());
             table.row(names, analysis.paint, first.into_iter().chain(figures))?;
@@ -65,8 +66,13 @@ fn anova(outcome: &Outcome) -> csv::Result<Vec<u8>> {
     long(outcome, &columns, |_, analysis, row| {
         let note = || analysis.anova.note.clone().unwrap_or_default();
         for source in &analysis.anova.rows {
-            let figures =
-                [number(source.ss), number(source.df), optional(source.f), optional(source.p), optional(source.eta2)];
+            let figures = [
+                number(source.ss),
+                source.df.to_string(),
+                optional(source.f),
+                optional(source.p),
+                optional(source.eta2),
+            ];
             row([source.source.clone()].into_iter().chain(figures).chain([optional(source.omega2), note()]).collect())?;
         }
         // Where there is no table, the reason stands alone.
@@ -97,9 +103,9 @@ fn tukey(outcome: &Outcome) -> csv::Result<Vec<u8>> {
     let columns = ["measure", "group1", "group2", "meandiff", "p_adj", "lower", "upper", "reject"];
     long(outcome, &columns, |_, analysis, row| {
         analysis.tukey.iter().try_for_each(|pair| {
-            let figures = [pair.meandiff, pair.p_adj, pair.lower, pair.upper].map(number);
-            let names = [pair.group1.clone(), pair.group2.clone()];
-            row(names.into_iter().chain(figures).chain([pair.reject.to_string()]).collect())
+            let figures = [Some(pair.meandiff), pair.p_adj, pair.lower, pair.upper].map(optional);
+            let reject = pair.reject.map(|reject| reject.to_string()).unwrap_or_default();
+            row([pair.group1.clone(), pair.group2.clone()].into_iter().chain(figures).chain([reject]).collect())
         })
     })
 }
