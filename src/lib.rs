@@ -24,10 +24,12 @@
 //! terminal, no clock and, but for a [`loader::Loader`], no file.
 
 pub mod back;
+pub mod chart;
 #[doc(hidden)]
 pub mod cli;
 pub mod diag;
 pub mod drawing;
+pub mod experiment;
 pub mod field;
 pub mod geom;
 pub mod loader;
@@ -40,6 +42,7 @@ pub mod region;
 pub mod scene;
 pub mod span;
 pub mod stage;
+pub mod stats;
 pub mod syntax;
 pub mod wedge;
 

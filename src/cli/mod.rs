@@ -8,6 +8,7 @@
 mod build;
 mod check;
 mod convert;
+mod experiment;
 mod explain;
 mod files;
 mod fmt;
@@ -77,6 +78,8 @@ enum Command {
     Params(params::ParamsArgs),
     /// Draw the calibration wedge of a tone, and print what its steps measure
     Wedge(wedge::WedgeArgs),
+    /// Run a scene's experiment: every condition with every seed, measured, analysed and pictured
+    Experiment(Box<experiment::ExperimentArgs>),
     /// Explain a diagnostic's code, or list them all
     Explain(explain::ExplainArgs),
     /// Print a completion script for a shell
@@ -100,7 +103,7 @@ struct SceneArgs {
     /// The folder whose files the scene may read
     #[arg(long, value_name = "DIR")]
     root: Option<PathBuf>,
-    /// Lift a limit: tiles, strokes, iterations, megapixels or nesting
+    /// Lift a limit: tiles, strokes, iterations, megapixels, nesting or runs
     #[arg(long, value_name = "NAME=N", value_parser = limits::parse_limit)]
     limit: Vec<(limits::Limit, u64)>,
 }
@@ -135,6 +138,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Ir(arguments) => ir::run(&arguments),
         Command::Params(arguments) => params::run(&arguments),
         Command::Wedge(arguments) => wedge::run(&arguments),
+        Command::Experiment(arguments) => experiment::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Completions(arguments) => {
             let mut script = Vec::new();

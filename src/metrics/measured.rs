@@ -9,6 +9,10 @@ use crate::stage::{Graph, Layers};
 /// A pattern as it is measured. All lists have one entry a tile.
 #[derive(Debug, Clone)]
 pub struct Measured {
+    /// The paint's name; with the seed it keys what is drawn at random where only a sample can be looked at.
+    pub name: String,
+    /// The scene's seed or the paint's own.
+    pub seed: u64,
     /// What the tiles fill.
     pub region: Region,
     /// Where they lie, in millimetres.
@@ -45,6 +49,8 @@ impl Measured {
         let triangles = triangles.filter_map(|&[a, b, c]| Some([number(a)?, number(b)?, number(c)?])).collect();
         let period = stages.sites.period();
         Self {
+            name: paint.name.clone(),
+            seed: paint.seed,
             region: paint.region.clone(),
             sites: inside.iter().map(|&tile| stages.sites.points[tile]).collect(),
             graph: Graph::new(inside.len(), &edges, triangles),

@@ -5,6 +5,7 @@
 //! [`Measures`]; the names are those that tables, JSON and experiments print.
 
 pub mod contrast;
+pub mod correlogram;
 pub mod diversity;
 mod measured;
 
@@ -31,6 +32,9 @@ pub struct Measures {
     /// How many directions there are.
     #[serde(flatten)]
     pub diversity: diversity::Diversity,
+    /// How alike tiles are turned, by their distance.
+    #[serde(flatten)]
+    pub correlogram: correlogram::Correlogram,
 }
 
 impl Measures {
@@ -42,6 +46,7 @@ impl Measures {
             edges: measured.graph.edges().count(),
             contrast: contrast::measure(measured),
             diversity: diversity::measure(measured),
+            correlogram: correlogram::measure(measured),
         }
     }
 
@@ -52,6 +57,7 @@ impl Measures {
             vec![("tiles".into(), Some(self.tiles as f64)), ("edges".into(), Some(self.edges as f64))];
         scalars.extend(self.contrast.scalars());
         scalars.extend(self.diversity.scalars());
+        scalars.extend(self.correlogram.scalars());
         scalars
     }
 }
