@@ -50,13 +50,13 @@ impl Anchor {
     }
 }
 
-/// About how wide a text is: fonts differ, and none is read here.
+/// About how wide a text is, rather too wide: fonts differ, and none is read here.
 pub(super) fn width_of(text: &str, size: f64) -> f64 {
     let em = |c: char| match c {
-        'i' | 'j' | 'l' | 'I' | '.' | ',' | ':' | ';' | '|' | '\'' | ' ' | 'f' | 't' | 'r' => 0.32,
-        'm' | 'w' | 'M' | 'W' | '%' => 0.86,
-        'A'..='Z' => 0.68,
-        c if (c as u32) < 0x1100 => 0.55,
+        'i' | 'j' | 'l' | 'I' | '.' | ',' | ':' | ';' | '|' | '\'' | ' ' | 'f' | 't' | 'r' => 0.38,
+        'm' | 'w' | 'M' | 'W' | '%' => 0.95,
+        'A'..='Z' => 0.72,
+        c if (c as u32) < 0x1100 => 0.62,
         _ => 1.0,
     };
     text.chars().map(em).sum::<f64>() * size
