@@ -12,6 +12,7 @@ const ARROWS: [(&str, &[&str]); 19] = [
     ("geom", &[]),
     ("random", &[]),
     ("loader", &[]),
+    ("stats", &[]),
     ("diag", &["span"]),
     ("syntax", &["span", "diag"]),
     ("region", &["geom"]),
