@@ -7,6 +7,8 @@
 pub mod contrast;
 pub mod diversity;
 mod measured;
+pub mod space;
+mod statistics;
 
 use std::borrow::Cow;
 
@@ -31,6 +33,9 @@ pub struct Measures {
     /// How many directions there are.
     #[serde(flatten)]
     pub diversity: diversity::Diversity,
+    /// How evenly tiles lie, and how much of the region they cover.
+    #[serde(flatten)]
+    pub space: space::Space,
 }
 
 impl Measures {
@@ -42,6 +47,7 @@ impl Measures {
             edges: measured.graph.edges().count(),
             contrast: contrast::measure(measured),
             diversity: diversity::measure(measured),
+            space: space::measure(measured),
         }
     }
 
@@ -52,6 +58,7 @@ impl Measures {
             vec![("tiles".into(), Some(self.tiles as f64)), ("edges".into(), Some(self.edges as f64))];
         scalars.extend(self.contrast.scalars());
         scalars.extend(self.diversity.scalars());
+        scalars.extend(self.space.scalars());
         scalars
     }
 }
