@@ -12,7 +12,6 @@ const ARROWS: [(&str, &[&str]); 19] = [
     ("geom", &[]),
     ("random", &[]),
     ("loader", &[]),
-    ("stats", &[]),
     ("diag", &["span"]),
     ("syntax", &["span", "diag"]),
     ("region", &["geom"]),
