@@ -34,6 +34,15 @@ pub struct Measured {
     pub period: Option<Period>,
 }
 
+/// What of a paint's region lies where sites were asked for: what is off the canvas has no tiles to be measured.
+fn visible(paint: &Paint, stages: &Stages<'_>) -> Region {
+    let (domain, bounds) = (stages.sites.domain, paint.region.bounds());
+    if domain.intersection(&bounds) == bounds {
+        return paint.region.clone();
+    }
+    paint.region.intersection(&Region::rect(domain))
+}
+
 impl Measured {
     /// What is measured of a paint.
     #[must_use]
@@ -49,9 +58,13 @@ impl Measured {
         let triangles = triangles.filter_map(|&[a, b, c]| Some([number(a)?, number(b)?, number(c)?])).collect();
         let period = stages.sites.period();
         Self {
+<<<<<<< HEAD
             name: paint.name.clone(),
             seed: paint.seed,
             region: paint.region.clone(),
+=======
+            region: visible(paint, stages),
+>>>>>>> measures
             sites: inside.iter().map(|&tile| stages.sites.points[tile]).collect(),
             graph: Graph::new(inside.len(), &edges, triangles),
             is_triangulated: paint.tone.link == Link::Delaunay && period.is_none(),
@@ -60,6 +73,22 @@ impl Measured {
             layers: inside.iter().map(|&tile| stages.tiles.layers[tile]).collect(),
             outlines: inside.iter().map(|&tile| stages.tiles.outline(tile).to_vec()).collect(),
             period,
+        }
+    }
+
+    /// A graph without anything else, for tests to fill in what they are about.
+    #[cfg(test)]
+    pub(crate) fn nothing(graph: Graph) -> Self {
+        Self {
+            region: Region::empty(),
+            sites: Vec::new(),
+            graph,
+            is_triangulated: false,
+            angles: Vec::new(),
+            k: Vec::new(),
+            layers: Vec::new(),
+            outlines: Vec::new(),
+            period: None,
         }
     }
 

@@ -8,6 +8,8 @@ pub mod contrast;
 pub mod correlogram;
 pub mod diversity;
 mod measured;
+pub mod space;
+mod statistics;
 
 use std::borrow::Cow;
 
@@ -35,6 +37,9 @@ pub struct Measures {
     /// How alike tiles are turned, by their distance.
     #[serde(flatten)]
     pub correlogram: correlogram::Correlogram,
+    /// How evenly tiles lie, and how much of the region they cover.
+    #[serde(flatten)]
+    pub space: space::Space,
 }
 
 impl Measures {
@@ -47,6 +52,7 @@ impl Measures {
             contrast: contrast::measure(measured),
             diversity: diversity::measure(measured),
             correlogram: correlogram::measure(measured),
+            space: space::measure(measured),
         }
     }
 
@@ -58,6 +64,7 @@ impl Measures {
         scalars.extend(self.contrast.scalars());
         scalars.extend(self.diversity.scalars());
         scalars.extend(self.correlogram.scalars());
+        scalars.extend(self.space.scalars());
         scalars
     }
 }

@@ -30,6 +30,8 @@ pub(super) struct ExperimentArgs {
     #[command(subcommand)]
     command: Option<ExperimentCommand>,
     #[command(flatten)]
+    scene: Option<SceneArgs>,
+    #[command(flatten)]
     run: Option<RunArgs>,
 }
 
@@ -41,8 +43,6 @@ enum ExperimentCommand {
 
 #[derive(Debug, Args)]
 struct RunArgs {
-    #[command(flatten)]
-    scene: SceneArgs,
     /// The experiment; it may be left out where the scene declares just one
     name: Option<String>,
     /// The folder that the tables, the pictures and the report go to. Runs that are finished there are not done again
@@ -78,24 +78,24 @@ fn parse_shard(text: &str) -> Result<Shard, String> {
 }
 
 pub(super) fn run(arguments: &ExperimentArgs) -> Ended {
-    match (&arguments.command, &arguments.run) {
-        (Some(ExperimentCommand::Merge(arguments)), _) => merge::run(arguments),
-        (None, Some(arguments)) => experiment(arguments),
-        // clap asks for a scene where there is no other command.
-        (None, None) => Ended::Usage,
+    match (&arguments.command, &arguments.scene, &arguments.run) {
+        (Some(ExperimentCommand::Merge(arguments)), ..) => merge::run(arguments),
+        (None, Some(scene), Some(arguments)) => experiment(scene, arguments),
+        // clap asks for a scene and a folder where there is no other command.
+        (None, ..) => Ended::Usage,
     }
 }
 
-fn experiment(arguments: &RunArgs) -> Ended {
+fn experiment(scene: &SceneArgs, arguments: &RunArgs) -> Ended {
     if let Some(jobs) = arguments.jobs {
         // Fails only where the pool is there already, which nothing before this makes.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(usize::from(jobs)).build_global();
     }
-    let opened = match open(&arguments.scene.scene, arguments.scene.root.as_deref()) {
+    let opened = match open(&scene.scene, scene.root.as_deref()) {
         Ok(opened) => opened,
         Err(error) => return report::cannot_open(error),
     };
-    let mut config = arguments.scene.config(None);
+    let mut config = scene.config(None);
     config.only.clone_from(&arguments.only);
     super::picture::take_over(&mut config, &opened);
     // Every run has a seed of its own.
@@ -106,7 +106,7 @@ fn experiment(arguments: &RunArgs) -> Ended {
     let planned = plan(&mut lowered, arguments.name.as_deref(), seeds, &config);
     let ended = report::diagnostics(&lowered.diagnostics, &lowered.sources);
     let Some(plan) = planned else { return ended };
-    if let Some(set) = clash(arguments, &plan) {
+    if let Some(set) = clash(scene, &plan) {
         eprintln!("kake: `{set}` is a factor of the experiment `{}` and cannot be set besides", plan.name);
         return Ended::Usage;
     }
@@ -169,9 +169,9 @@ fn chosen<'a>(scene: &'a Scene, name: Option<&str>) -> Result<&'a Experiment, Di
 }
 
 /// A parameter that the command line sets although the experiment varies it.
-fn clash<'a>(arguments: &'a RunArgs, plan: &Plan) -> Option<&'a str> {
+fn clash<'a>(scene: &'a SceneArgs, plan: &Plan) -> Option<&'a str> {
     let varied = |name: &str| plan.factors.iter().any(|factor| factor.param == name);
-    arguments.scene.set.iter().map(|(name, _)| name.as_str()).find(|name| varied(name))
+    scene.set.iter().map(|(name, _)| name.as_str()).find(|name| varied(name))
 }
 
 /// Every file that some condition or picture reads.
