@@ -6,8 +6,13 @@
 
 pub mod contrast;
 pub mod correlogram;
+pub mod decay;
 pub mod diversity;
+#[cfg(test)]
+mod known;
 mod measured;
+pub mod spectrum;
+mod trust;
 
 use std::borrow::Cow;
 
@@ -35,18 +40,27 @@ pub struct Measures {
     /// How alike tiles are turned, by their distance.
     #[serde(flatten)]
     pub correlogram: correlogram::Correlogram,
+    /// How fast that fades.
+    #[serde(flatten)]
+    pub decay: decay::Decay,
+    /// With which period it repeats.
+    #[serde(flatten)]
+    pub spectrum: spectrum::Spectrum,
 }
 
 impl Measures {
     /// Measures a pattern.
     #[must_use]
     pub fn new(measured: &Measured) -> Self {
+        let correlogram = correlogram::measure(measured);
         Self {
             tiles: measured.sites.len(),
             edges: measured.graph.edges().count(),
             contrast: contrast::measure(measured),
             diversity: diversity::measure(measured),
-            correlogram: correlogram::measure(measured),
+            decay: decay::measure(&correlogram),
+            spectrum: spectrum::measure(&correlogram),
+            correlogram,
         }
     }
 
@@ -58,6 +72,8 @@ impl Measures {
         scalars.extend(self.contrast.scalars());
         scalars.extend(self.diversity.scalars());
         scalars.extend(self.correlogram.scalars());
+        scalars.extend(self.decay.scalars());
+        scalars.extend(self.spectrum.scalars());
         scalars
     }
 }
