@@ -6,10 +6,15 @@
 
 pub mod contrast;
 pub mod correlogram;
+pub mod decay;
 pub mod diversity;
+#[cfg(test)]
+mod known;
 mod measured;
 pub mod space;
+pub mod spectrum;
 mod statistics;
+mod trust;
 
 use std::borrow::Cow;
 
@@ -40,19 +45,28 @@ pub struct Measures {
     /// How evenly tiles lie, and how much of the region they cover.
     #[serde(flatten)]
     pub space: space::Space,
+    /// How fast that fades.
+    #[serde(flatten)]
+    pub decay: decay::Decay,
+    /// With which period it repeats.
+    #[serde(flatten)]
+    pub spectrum: spectrum::Spectrum,
 }
 
 impl Measures {
     /// Measures a pattern.
     #[must_use]
     pub fn new(measured: &Measured) -> Self {
+        let correlogram = correlogram::measure(measured);
         Self {
             tiles: measured.sites.len(),
             edges: measured.graph.edges().count(),
             contrast: contrast::measure(measured),
             diversity: diversity::measure(measured),
-            correlogram: correlogram::measure(measured),
             space: space::measure(measured),
+            decay: decay::measure(&correlogram),
+            spectrum: spectrum::measure(&correlogram),
+            correlogram,
         }
     }
 
@@ -65,6 +79,8 @@ impl Measures {
         scalars.extend(self.diversity.scalars());
         scalars.extend(self.correlogram.scalars());
         scalars.extend(self.space.scalars());
+        scalars.extend(self.decay.scalars());
+        scalars.extend(self.spectrum.scalars());
         scalars
     }
 }
