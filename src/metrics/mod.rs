@@ -10,10 +10,12 @@ pub mod decay;
 pub mod diversity;
 #[cfg(test)]
 mod known;
+pub mod layers;
 mod measured;
 pub mod space;
 pub mod spectrum;
 mod statistics;
+mod strokes;
 mod trust;
 
 use std::borrow::Cow;
@@ -39,6 +41,8 @@ pub struct Measures {
     /// How many directions there are.
     #[serde(flatten)]
     pub diversity: diversity::Diversity,
+    /// Contrast and diversity in one: `e_contrast` times `h_angle`, in [0, 1].
+    pub joint: f64,
     /// How alike tiles are turned, by their distance.
     #[serde(flatten)]
     pub correlogram: correlogram::Correlogram,
@@ -51,22 +55,29 @@ pub struct Measures {
     /// With which period it repeats.
     #[serde(flatten)]
     pub spectrum: spectrum::Spectrum,
+    /// What the layers of tiles make of them.
+    #[serde(flatten)]
+    pub layers: layers::LayerMeasures,
 }
 
 impl Measures {
     /// Measures a pattern.
     #[must_use]
     pub fn new(measured: &Measured) -> Self {
+        let contrast = contrast::measure(measured);
+        let diversity = diversity::measure(measured);
         let correlogram = correlogram::measure(measured);
         Self {
             tiles: measured.sites.len(),
             edges: measured.graph.edges().count(),
-            contrast: contrast::measure(measured),
-            diversity: diversity::measure(measured),
+            joint: contrast.e_contrast * diversity.h_angle,
+            contrast,
+            diversity,
             space: space::measure(measured),
             decay: decay::measure(&correlogram),
             spectrum: spectrum::measure(&correlogram),
             correlogram,
+            layers: layers::measure(measured),
         }
     }
 
@@ -77,10 +88,12 @@ impl Measures {
             vec![("tiles".into(), Some(self.tiles as f64)), ("edges".into(), Some(self.edges as f64))];
         scalars.extend(self.contrast.scalars());
         scalars.extend(self.diversity.scalars());
+        scalars.push(("joint".into(), Some(self.joint)));
         scalars.extend(self.correlogram.scalars());
-        scalars.extend(self.space.scalars());
         scalars.extend(self.decay.scalars());
         scalars.extend(self.spectrum.scalars());
+        scalars.extend(self.space.scalars());
+        scalars.extend(self.layers.scalars());
         scalars
     }
 }

@@ -94,7 +94,9 @@ fn files(
     files.push(named(MADE, made.map(String::into_bytes).map_err(io::Error::from))?);
     let report = experiment::report(recipe, outcome, &pictures);
     files.push((REPORT.to_owned(), report.html.into_bytes()));
-    files.extend(report.figures.into_iter().map(|figure| (format!("{FIGURES}/{}", figure.file), figure.svg.into_bytes())));
+    files.extend(
+        report.figures.into_iter().map(|figure| (format!("{FIGURES}/{}", figure.file), figure.svg.into_bytes())),
+    );
     for picture in pictures {
         files.extend(picture.png.ok().map(|png| (format!("{IMAGES}/{}", picture.file), png)));
     }
