@@ -58,13 +58,9 @@ impl Measured {
         let triangles = triangles.filter_map(|&[a, b, c]| Some([number(a)?, number(b)?, number(c)?])).collect();
         let period = stages.sites.period();
         Self {
-<<<<<<< HEAD
             name: paint.name.clone(),
             seed: paint.seed,
-            region: paint.region.clone(),
-=======
             region: visible(paint, stages),
->>>>>>> measures
             sites: inside.iter().map(|&tile| stages.sites.points[tile]).collect(),
             graph: Graph::new(inside.len(), &edges, triangles),
             is_triangulated: paint.tone.link == Link::Delaunay && period.is_none(),
