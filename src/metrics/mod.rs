@@ -7,9 +7,11 @@
 pub mod contrast;
 pub mod correlogram;
 pub mod diversity;
+pub mod layers;
 mod measured;
 pub mod space;
 mod statistics;
+mod strokes;
 
 use std::borrow::Cow;
 
@@ -34,25 +36,34 @@ pub struct Measures {
     /// How many directions there are.
     #[serde(flatten)]
     pub diversity: diversity::Diversity,
+    /// Contrast and diversity in one: `e_contrast` times `h_angle`, in [0, 1].
+    pub joint: f64,
     /// How alike tiles are turned, by their distance.
     #[serde(flatten)]
     pub correlogram: correlogram::Correlogram,
     /// How evenly tiles lie, and how much of the region they cover.
     #[serde(flatten)]
     pub space: space::Space,
+    /// What the layers of tiles make of them.
+    #[serde(flatten)]
+    pub layers: layers::LayerMeasures,
 }
 
 impl Measures {
     /// Measures a pattern.
     #[must_use]
     pub fn new(measured: &Measured) -> Self {
+        let contrast = contrast::measure(measured);
+        let diversity = diversity::measure(measured);
         Self {
             tiles: measured.sites.len(),
             edges: measured.graph.edges().count(),
-            contrast: contrast::measure(measured),
-            diversity: diversity::measure(measured),
+            joint: contrast.e_contrast * diversity.h_angle,
+            contrast,
+            diversity,
             correlogram: correlogram::measure(measured),
             space: space::measure(measured),
+            layers: layers::measure(measured),
         }
     }
 
@@ -63,8 +74,10 @@ impl Measures {
             vec![("tiles".into(), Some(self.tiles as f64)), ("edges".into(), Some(self.edges as f64))];
         scalars.extend(self.contrast.scalars());
         scalars.extend(self.diversity.scalars());
+        scalars.push(("joint".into(), Some(self.joint)));
         scalars.extend(self.correlogram.scalars());
         scalars.extend(self.space.scalars());
+        scalars.extend(self.layers.scalars());
         scalars
     }
 }
