@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::support::here;
 
 /// What each part may know of.
-const ARROWS: [(&str, &[&str]); 19] = [
+const ARROWS: [(&str, &[&str]); 21] = [
     ("span", &[]),
     ("geom", &[]),
     ("random", &[]),
@@ -21,18 +21,21 @@ const ARROWS: [(&str, &[&str]); 19] = [
     ("drawing", &["geom", "scene"]),
     ("pass", &["scene", "stage", "geom", "region", "field", "random", "diag", "span", "drawing"]),
     ("metrics", &["pass", "stage", "scene", "region", "geom", "random"]),
+    ("overlay", &["drawing", "geom", "metrics", "pass", "region", "scene"]),
     ("stats", &[]),
+    ("chart", &["geom"]),
     ("back", &["drawing", "geom", "scene"]),
     ("lower", &["syntax", "scene", "region", "field", "loader", "diag", "span", "geom", "random"]),
     (
         "wedge",
         &["back", "diag", "drawing", "field", "geom", "loader", "lower", "pass", "region", "scene", "span", "syntax"],
     ),
-    ("experiment", &["back", "diag", "loader", "lower", "metrics", "scene", "span", "stats"]),
+    ("experiment", &["back", "chart", "diag", "loader", "lower", "metrics", "scene", "span", "stats"]),
     (
         "cli",
         &[
             "back",
+            "chart",
             "diag",
             "drawing",
             "experiment",
@@ -40,6 +43,8 @@ const ARROWS: [(&str, &[&str]); 19] = [
             "geom",
             "loader",
             "lower",
+            "metrics",
+            "overlay",
             "pass",
             "random",
             "region",

@@ -116,7 +116,7 @@ impl SceneArgs {
     /// The configuration that the arguments ask for.
     fn config(&self, seed: Option<u64>) -> Config {
         let lower = LowerConfig { sets: self.set.clone(), seed, dpi: None, limits: self.limits() };
-        Config { lower, only: None }
+        Config { lower, only: None, overlays: Vec::new() }
     }
 }
 

@@ -115,7 +115,7 @@ impl Recipe {
             sets.push((setting.param.clone(), setting.expression.clone()));
         }
         let lower = LowerConfig { sets, seed, dpi: self.dpi, limits: self.limits() };
-        Config { lower, only: self.only.clone() }
+        Config { lower, only: self.only.clone(), overlays: Vec::new() }
     }
 }
 

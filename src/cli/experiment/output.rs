@@ -17,6 +17,10 @@ use super::keep;
 /// The folder of the pictures.
 const IMAGES: &str = "images";
 
+/// The page that shows it all, and the folder of its charts.
+const REPORT: &str = "report.html";
+const FIGURES: &str = "figures";
+
 /// How the files were made.
 const MADE: &str = "made.json";
 
@@ -88,6 +92,9 @@ fn files(
     files.push(named("runs.parquet", experiment::parquet::runs(outcome).map_err(io::Error::other))?);
     let made = experiment::made(recipe, outcome, &pictures);
     files.push(named(MADE, made.map(String::into_bytes).map_err(io::Error::from))?);
+    let report = experiment::report(recipe, outcome, &pictures);
+    files.push((REPORT.to_owned(), report.html.into_bytes()));
+    files.extend(report.figures.into_iter().map(|figure| (format!("{FIGURES}/{}", figure.file), figure.svg.into_bytes())));
     for picture in pictures {
         files.extend(picture.png.ok().map(|png| (format!("{IMAGES}/{}", picture.file), png)));
     }
