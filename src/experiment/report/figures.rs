@@ -102,10 +102,7 @@ fn effect(outcome: &Outcome, analysis: &Analysis, first: usize, second: Option<u
 fn estimate(values: &[f64]) -> Option<Estimate> {
     let summary = crate::stats::summary(values)?;
     let error = summary.sd.map(|sd| 2.0 * sd / (summary.n as f64).sqrt());
-    Some(Estimate {
-        mean: summary.mean,
-        interval: error.map(|error| [summary.mean - error, summary.mean + error]),
-    })
+    Some(Estimate { mean: summary.mean, interval: error.map(|error| [summary.mean - error, summary.mean + error]) })
 }
 
 /// Every pair of conditions by Cohen's d.
@@ -167,11 +164,7 @@ pub(super) fn correlograms(outcome: &Outcome, paint: usize) -> Vec<Figure> {
     let all = || series.iter().flat_map(|series| &series.spots);
     let edges = all().flat_map(|spot| [spot.y].into_iter().chain(spot.band.into_iter().flatten()));
     let [low, high] = edges.fold([0.0f64, 0.0f64], |[low, high], value| [low.min(value), high.max(value)]);
-    let titles = Titles {
-        title: "Correlogram: mean ± SD over the seeds",
-        x: "distance along the links, k",
-        y: "R_k",
-    };
+    let titles = Titles { title: "Correlogram: mean ± SD over the seeds", x: "distance along the links, k", y: "R_k" };
     let parts = series.chunks(TOGETHER).enumerate().map(|(number, series)| {
         let svg = chart::lines(&titles, series, Some([low, high]));
         let number = (number + 1).to_string();

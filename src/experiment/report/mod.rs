@@ -63,7 +63,8 @@ pub fn report(recipe: &Recipe, outcome: &Outcome, pictures: &[Picture]) -> Repor
         }
     };
     let figures = paints.into_iter().flat_map(|charts| {
-        let measures = charts.measures.into_iter().flat_map(|of| of.boxes.into_iter().chain(of.effects).chain(of.cohen));
+        let measures =
+            charts.measures.into_iter().flat_map(|of| of.boxes.into_iter().chain(of.effects).chain(of.cohen));
         charts.correlograms.into_iter().chain(measures).collect::<Vec<_>>()
     });
     Report { html: page.into_string(), figures: figures.collect() }

@@ -5,14 +5,14 @@ use crate::experiment::{Bytes, Condition, Done, Factor, PaintFigures, ParamType,
 
 /// An experiment of two by two conditions and a reference; `value` gives the measures of a run.
 fn outcome(seeds: [u64; 2], paints: &[&str], value: impl Fn(usize, u64) -> Vec<(String, Option<f64>)>) -> Outcome {
-    let factor = |param: &str, levels: [&str; 2]| Factor { param: param.to_owned(), levels: levels.map(str::to_owned).to_vec() };
+    let factor =
+        |param: &str, levels: [&str; 2]| Factor { param: param.to_owned(), levels: levels.map(str::to_owned).to_vec() };
     let factors = vec![factor("place", ["<poisson>", "uniform & co"]), factor("angles", ["bfs", "random"])];
     let condition = |name: String, levels| Condition { name, levels, sets: Vec::new(), labels: Vec::new() };
     let design = |a: usize, b: usize| {
         condition(format!("{} + {}", factors[0].levels[a], factors[1].levels[b]), Some(vec![a, b]))
     };
-    let conditions =
-        vec![design(0, 0), design(0, 1), design(1, 0), design(1, 1), condition("grid".to_owned(), None)];
+    let conditions = vec![design(0, 0), design(0, 1), design(1, 0), design(1, 1), condition("grid".to_owned(), None)];
     let params = vec![ParamType { name: "place".to_owned(), ty: "string".to_owned() }];
     let plan = Plan { name: "t<e>st".to_owned(), seeds, factors, params, conditions, pictures: vec![Vec::new()] };
     let runs = 0..plan.runs();
@@ -83,17 +83,20 @@ fn the_best_condition_is_marked() {
     let outcome = outcome([0, 5], &["plate"], figures);
     let page = report(&recipe(), &outcome, &[]).html;
     let row = page.split("<code>e_contrast</code></th>").nth(1).and_then(|rest| rest.split("</tr>").next());
-    let classes: Vec<bool> = row.unwrap_or_default().split("<td").skip(1).map(|td| td.starts_with(" class=\"best\"")).collect();
+    let classes: Vec<bool> =
+        row.unwrap_or_default().split("<td").skip(1).map(|td| td.starts_with(" class=\"best\"")).collect();
     assert_eq!(classes, [false, false, false, false, true]);
 }
 
 #[test]
 fn what_cannot_be_said_is_noted() {
-    let one_seed = outcome([3, 3], &["sky", "ground"], |condition, _| vec![
-        ("e_contrast".to_owned(), Some(0.5)),
-        ("xi".to_owned(), (condition == 0).then_some(1.0)),
-        ("never".to_owned(), None),
-    ]);
+    let one_seed = outcome([3, 3], &["sky", "ground"], |condition, _| {
+        vec![
+            ("e_contrast".to_owned(), Some(0.5)),
+            ("xi".to_owned(), (condition == 0).then_some(1.0)),
+            ("never".to_owned(), None),
+        ]
+    });
     let page = report(&recipe(), &one_seed, &[]).html;
     assert!(page.contains("xi of ground in 1 of 1 runs of &lt;poisson&gt; + random"), "{page}");
     assert!(!page.contains("NaN"));

@@ -136,7 +136,10 @@ mod tests {
 
     #[test]
     fn numbers_are_written_for_people() {
-        assert_eq!([probability(1e-40), probability(3.21e-5), probability(0.04)], ["< 1e\u{2212}12", "3.2e\u{2212}5", "0.0400"]);
+        assert_eq!(
+            [probability(1e-40), probability(3.21e-5), probability(0.04)],
+            ["< 1e\u{2212}12", "3.2e\u{2212}5", "0.0400"]
+        );
         assert_eq!([digits(0.0, 4), digits(12.3456, 4), digits(-0.012_345_6, 3)], ["0", "12.35", "\u{2212}0.0123"]);
         assert_eq!([digits(1.5e-7, 3), digits(123_456.0, 3)], ["1.50e\u{2212}7", "123456"]);
         assert_eq!([fixed(-0.0001, 2), fixed(-0.5, 1)], ["0.00", "\u{2212}0.5"]);
@@ -146,6 +149,9 @@ mod tests {
 
     #[test]
     fn only_the_correlogram_has_distances() {
-        assert_eq!([distance("r12"), distance("r"), distance("r_hat"), distance("r+1"), distance("xi")], [Some(12), None, None, None, None]);
+        assert_eq!(
+            [distance("r12"), distance("r"), distance("r_hat"), distance("r+1"), distance("xi")],
+            [Some(12), None, None, None, None]
+        );
     }
 }
