@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Outcome, Picture, Recipe};
+use super::{Figure, Outcome, Picture, Recipe};
 
 #[derive(Serialize)]
 struct Made<'a> {
@@ -14,6 +14,7 @@ struct Made<'a> {
     runs: usize,
     conditions: Vec<Condition<'a>>,
     pictures: Vec<Drawn<'a>>,
+    charts: Vec<&'a str>,
     recipe: &'a Recipe,
 }
 
@@ -59,7 +60,7 @@ fn quoted(word: &str) -> String {
 ///
 /// # Errors
 /// If it cannot be serialised.
-pub fn made(recipe: &Recipe, outcome: &Outcome, pictures: &[Picture]) -> serde_json::Result<String> {
+pub fn made(recipe: &Recipe, outcome: &Outcome, pictures: &[Picture], charts: &[Figure]) -> serde_json::Result<String> {
     let plan = &outcome.plan;
     let conditions = plan.conditions.iter().enumerate().map(|(number, condition)| Condition {
         name: &condition.name,
@@ -84,6 +85,7 @@ pub fn made(recipe: &Recipe, outcome: &Outcome, pictures: &[Picture]) -> serde_j
         runs: plan.runs(),
         conditions: conditions.collect(),
         pictures: drawn.collect(),
+        charts: charts.iter().map(|chart| chart.file.as_str()).collect(),
         recipe,
     })
     .map(|json| json + "\n")

@@ -40,12 +40,15 @@ pub(super) fn write(folder: &Path, recipe: &Recipe, plan: Plan, done: BTreeMap<u
         Ended::Done => worst,
         fault => fault,
     };
-    let stale = stale(folder, &pictures);
-    match files(recipe, &outcome, pictures, journal).and_then(|files| put(folder, files)) {
-        Ok(()) => {}
+    let files = match files(recipe, &outcome, pictures, journal) {
+        Ok(files) => files,
         Err((path, error)) => return failed(&folder.join(path), &error),
+    };
+    let stale = stale(folder, &files);
+    if let Err((path, error)) = put(folder, files) {
+        return failed(&folder.join(path), &error);
     }
-    // Pictures of an earlier outcome would be taken for this one's.
+    // Pictures and charts of an earlier outcome would be taken for this one's.
     for file in stale {
         let _ = fs::remove_file(file);
     }
@@ -90,9 +93,9 @@ fn files(
         files.push((name.to_owned(), bytes));
     }
     files.push(named("runs.parquet", experiment::parquet::runs(outcome).map_err(io::Error::other))?);
-    let made = experiment::made(recipe, outcome, &pictures);
-    files.push(named(MADE, made.map(String::into_bytes).map_err(io::Error::from))?);
     let report = experiment::report(recipe, outcome, &pictures);
+    let made = experiment::made(recipe, outcome, &pictures, &report.figures);
+    files.push(named(MADE, made.map(String::into_bytes).map_err(io::Error::from))?);
     files.push((REPORT.to_owned(), report.html.into_bytes()));
     files.extend(
         report.figures.into_iter().map(|figure| (format!("{FIGURES}/{}", figure.file), figure.svg.into_bytes())),
@@ -168,6 +171,7 @@ fn undrawn(pictures: &mut [Picture], outcome: &Outcome) -> Ended {
 #[derive(Deserialize)]
 struct Earlier {
     pictures: Vec<Drawn>,
+    charts: Vec<String>,
 }
 
 #[derive(Deserialize)]
@@ -175,12 +179,14 @@ struct Drawn {
     file: String,
 }
 
-/// Pictures that the folder's earlier outcome has, and this one has not.
-fn stale(folder: &Path, pictures: &[Picture]) -> Vec<PathBuf> {
+/// Pictures and charts that the folder's earlier outcome has, and this one has not.
+fn stale(folder: &Path, files: &Files) -> Vec<PathBuf> {
     let Ok(bytes) = fs::read(folder.join(MADE)) else { return Vec::new() };
     let Ok(earlier) = serde_json::from_slice::<Earlier>(&bytes) else { return Vec::new() };
-    let now: BTreeSet<&str> = pictures.iter().map(|picture| picture.file.as_str()).collect();
-    let is_plain = |file: &str| !file.contains(['/', '\\']) && file.ends_with(".png");
-    let gone = earlier.pictures.into_iter().filter(|drawn| is_plain(&drawn.file) && !now.contains(drawn.file.as_str()));
-    gone.map(|drawn| folder.join(IMAGES).join(drawn.file)).collect()
+    let now: BTreeSet<&str> = files.iter().map(|(path, _)| path.as_str()).collect();
+    let is_plain = |file: &str| !file.contains(['/', '\\']) && (file.ends_with(".png") || file.ends_with(".svg"));
+    let pictures = earlier.pictures.into_iter().map(|drawn| (IMAGES, drawn.file));
+    let all = pictures.chain(earlier.charts.into_iter().map(|file| (FIGURES, file)));
+    let gone = all.filter(|(of, file)| is_plain(file) && !now.contains(format!("{of}/{file}").as_str()));
+    gone.map(|(of, file)| folder.join(of).join(file)).collect()
 }
