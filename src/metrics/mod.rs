@@ -6,12 +6,18 @@
 
 pub mod contrast;
 pub mod correlogram;
+pub mod decay;
 pub mod diversity;
+#[cfg(test)]
+mod known;
 pub mod layers;
 mod measured;
 pub mod space;
+pub mod spectrum;
+pub mod ssim;
 mod statistics;
 mod strokes;
+mod trust;
 
 use std::borrow::Cow;
 
@@ -41,6 +47,12 @@ pub struct Measures {
     /// How alike tiles are turned, by their distance.
     #[serde(flatten)]
     pub correlogram: correlogram::Correlogram,
+    /// How fast that fades.
+    #[serde(flatten)]
+    pub decay: decay::Decay,
+    /// With which period it repeats.
+    #[serde(flatten)]
+    pub spectrum: spectrum::Spectrum,
     /// How evenly tiles lie, and how much of the region they cover.
     #[serde(flatten)]
     pub space: space::Space,
@@ -55,13 +67,16 @@ impl Measures {
     pub fn new(measured: &Measured) -> Self {
         let contrast = contrast::measure(measured);
         let diversity = diversity::measure(measured);
+        let correlogram = correlogram::measure(measured);
         Self {
             tiles: measured.sites.len(),
             edges: measured.graph.edges().count(),
             joint: contrast.e_contrast * diversity.h_angle,
             contrast,
             diversity,
-            correlogram: correlogram::measure(measured),
+            decay: decay::measure(&correlogram),
+            spectrum: spectrum::measure(&correlogram),
+            correlogram,
             space: space::measure(measured),
             layers: layers::measure(measured),
         }
@@ -76,6 +91,8 @@ impl Measures {
         scalars.extend(self.diversity.scalars());
         scalars.push(("joint".into(), Some(self.joint)));
         scalars.extend(self.correlogram.scalars());
+        scalars.extend(self.decay.scalars());
+        scalars.extend(self.spectrum.scalars());
         scalars.extend(self.space.scalars());
         scalars.extend(self.layers.scalars());
         scalars
