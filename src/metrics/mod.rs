@@ -12,8 +12,10 @@ pub mod diversity;
 mod known;
 pub mod layers;
 mod measured;
+pub mod read;
 pub mod space;
 pub mod spectrum;
+pub mod ssim;
 mod statistics;
 mod strokes;
 mod trust;
@@ -22,7 +24,7 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
-pub use measured::Measured;
+pub use measured::{Measured, visible};
 
 /// The single figures of a family by their names, in the order in which tables show them. What cannot be said of a
 /// pattern, such as the contrast of a pattern without links where it is a share of something, is `None`.
@@ -46,15 +48,15 @@ pub struct Measures {
     /// How alike tiles are turned, by their distance.
     #[serde(flatten)]
     pub correlogram: correlogram::Correlogram,
-    /// How evenly tiles lie, and how much of the region they cover.
-    #[serde(flatten)]
-    pub space: space::Space,
     /// How fast that fades.
     #[serde(flatten)]
     pub decay: decay::Decay,
     /// With which period it repeats.
     #[serde(flatten)]
     pub spectrum: spectrum::Spectrum,
+    /// How evenly tiles lie, and how much of the region they cover.
+    #[serde(flatten)]
+    pub space: space::Space,
     /// What the layers of tiles make of them.
     #[serde(flatten)]
     pub layers: layers::LayerMeasures,
@@ -73,10 +75,10 @@ impl Measures {
             joint: contrast.e_contrast * diversity.h_angle,
             contrast,
             diversity,
-            space: space::measure(measured),
             decay: decay::measure(&correlogram),
             spectrum: spectrum::measure(&correlogram),
             correlogram,
+            space: space::measure(measured),
             layers: layers::measure(measured),
         }
     }
