@@ -21,7 +21,7 @@ const ARROWS: [(&str, &[&str]); 18] = [
     ("stage", &["geom"]),
     ("drawing", &["geom", "scene"]),
     ("pass", &["scene", "stage", "geom", "region", "field", "random", "diag", "span", "drawing"]),
-    ("metrics", &["pass", "stage", "scene", "region", "geom", "random"]),
+    ("metrics", &["pass", "stage", "scene", "region", "geom", "random", "stats"]),
     ("back", &["drawing", "geom", "scene"]),
     ("lower", &["syntax", "scene", "region", "field", "loader", "diag", "span", "geom", "random"]),
     (
@@ -31,8 +31,8 @@ const ARROWS: [(&str, &[&str]); 18] = [
     (
         "cli",
         &[
-            "back", "diag", "drawing", "field", "geom", "loader", "lower", "pass", "random", "region", "scene", "span",
-            "stage", "syntax", "wedge",
+            "back", "diag", "drawing", "field", "geom", "loader", "lower", "metrics", "pass", "random", "region",
+            "scene", "span", "stage", "stats", "syntax", "wedge",
         ],
     ),
 ];

@@ -58,9 +58,9 @@ pub(super) struct BuildArgs {
 
 /// First and last seed.
 #[derive(Debug, Clone, Copy)]
-struct Seeds(u64, u64);
+pub(super) struct Seeds(pub(super) u64, pub(super) u64);
 
-fn parse_seeds(text: &str) -> Result<Seeds, String> {
+pub(super) fn parse_seeds(text: &str) -> Result<Seeds, String> {
     let (from, to) = text.split_once("..").ok_or("expected A..B, as in 0..15")?;
     let number = |text: &str| text.trim().parse::<u64>().map_err(|_| format!("`{text}` is not a whole number"));
     let (from, to) = (number(from)?, number(to)?);
