@@ -199,7 +199,8 @@ fn scene(arguments: &MetricsArgs) -> Result<Vec<Entry>, Ended> {
         eprintln!("kake: {words}");
         return Err(Ended::Fault);
     }
-    let mut entries: Vec<(usize, Entry)> = runs.into_iter().flat_map(|run| run.entries.into_iter().enumerate()).collect();
+    let mut entries: Vec<(usize, Entry)> =
+        runs.into_iter().flat_map(|run| run.entries.into_iter().enumerate()).collect();
     // Paint by paint, in each by seed: the sort is stable.
     entries.sort_by_key(|(paint, _)| *paint);
     Ok(entries.into_iter().map(|(_, entry)| entry).collect())

@@ -10,8 +10,9 @@ use crate::pass::link::link;
 use crate::region::Region;
 use crate::scene::Link;
 use crate::stage::{Graph, Sites, Torus};
+use crate::stats::summary;
 
-use super::{Measured, Scalars, statistics};
+use super::{Measured, Scalars};
 
 /// Columns and rows of the grid that coverage is looked at on.
 const SIDE: usize = 200;
@@ -181,9 +182,8 @@ impl Mask {
 
 /// The sample standard deviation over the mean of the areas of the sites' cells.
 fn unevenness(measured: &Measured) -> Option<f64> {
-    let areas = areas(measured);
-    let mean = statistics::mean(&areas)?;
-    Some(statistics::sample_deviation(&areas)? / mean).filter(|u| u.is_finite())
+    let areas = summary(&areas(measured))?;
+    Some(areas.sd? / areas.mean).filter(|unevenness| unevenness.is_finite())
 }
 
 /// The area of every tile's Voronoi cell within the region, in square millimetres.
