@@ -13,6 +13,7 @@ mod known;
 pub mod layers;
 mod measured;
 pub mod read;
+mod runs;
 pub mod space;
 pub mod spectrum;
 pub mod ssim;
@@ -23,7 +24,8 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
-pub use measured::{Measured, visible};
+pub use measured::Measured;
+pub use runs::Run;
 
 /// The single figures of a family by their names, in the order in which tables show them. What cannot be said of a
 /// pattern, such as the contrast of a pattern without links where it is a share of something, is `None`.

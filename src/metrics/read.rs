@@ -45,7 +45,7 @@ struct File {
 struct Pattern {
     paint: Option<String>,
     bounds: Option<[f64; 4]>,
-    /// The region's rings, where it is not its bounds.
+    /// The region's rings, where it is more than a box.
     region: Option<Vec<Vec<[f64; 2]>>>,
     /// Width and height of a page that repeats.
     period: Option<[f64; 2]>,

@@ -76,7 +76,7 @@ fn single(entry: &Entry) -> String {
     for (name, value) in figures() {
         let words = WORDS.iter().find(|(known, ..)| known == name);
         let note = match (value, words) {
-            (Some(_), _) if name == "xi" && at_bound => "on the bound of the fit: correlations do not fade",
+            (Some(_), _) if name == "xi" && at_bound => "on a bound of the fit, so no more than that",
             (Some(_), Some((_, meaning, _))) => meaning,
             (None, Some((_, _, why))) => why,
             (_, None) => "",
