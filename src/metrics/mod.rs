@@ -11,6 +11,7 @@ pub mod diversity;
 #[cfg(test)]
 mod known;
 mod measured;
+mod search;
 pub mod spectrum;
 mod trust;
 
