@@ -6,6 +6,7 @@
 
 pub mod contrast;
 pub mod diversity;
+pub mod grain;
 mod measured;
 
 use std::borrow::Cow;
@@ -31,6 +32,9 @@ pub struct Measures {
     /// How many directions there are.
     #[serde(flatten)]
     pub diversity: diversity::Diversity,
+    /// How much of a grain the pattern has.
+    #[serde(flatten)]
+    pub grain: grain::Grain,
 }
 
 impl Measures {
@@ -42,6 +46,7 @@ impl Measures {
             edges: measured.graph.edges().count(),
             contrast: contrast::measure(measured),
             diversity: diversity::measure(measured),
+            grain: grain::measure(measured),
         }
     }
 
@@ -52,6 +57,7 @@ impl Measures {
             vec![("tiles".into(), Some(self.tiles as f64)), ("edges".into(), Some(self.edges as f64))];
         scalars.extend(self.contrast.scalars());
         scalars.extend(self.diversity.scalars());
+        scalars.extend(self.grain.scalars());
         scalars
     }
 }
