@@ -39,6 +39,7 @@ pub mod region;
 pub mod scene;
 pub mod span;
 pub mod stage;
+pub mod stats;
 pub mod syntax;
 pub mod wedge;
 

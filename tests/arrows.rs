@@ -7,11 +7,12 @@ use std::path::{Path, PathBuf};
 use crate::support::here;
 
 /// What each part may know of.
-const ARROWS: [(&str, &[&str]); 17] = [
+const ARROWS: [(&str, &[&str]); 18] = [
     ("span", &[]),
     ("geom", &[]),
     ("random", &[]),
     ("loader", &[]),
+    ("stats", &[]),
     ("diag", &["span"]),
     ("syntax", &["span", "diag"]),
     ("region", &["geom"]),
