@@ -8,6 +8,7 @@ pub mod contrast;
 pub mod correlogram;
 pub mod decay;
 pub mod diversity;
+pub mod grain;
 #[cfg(test)]
 mod known;
 pub mod layers;
@@ -61,6 +62,9 @@ pub struct Measures {
     /// What the layers of tiles make of them.
     #[serde(flatten)]
     pub layers: layers::LayerMeasures,
+    /// How much of a grain the pattern has.
+    #[serde(flatten)]
+    pub grain: grain::Grain,
 }
 
 impl Measures {
@@ -81,6 +85,7 @@ impl Measures {
             correlogram,
             space: space::measure(measured),
             layers: layers::measure(measured),
+            grain: grain::measure(measured),
         }
     }
 
@@ -97,6 +102,7 @@ impl Measures {
         scalars.extend(self.spectrum.scalars());
         scalars.extend(self.space.scalars());
         scalars.extend(self.layers.scalars());
+        scalars.extend(self.grain.scalars());
         scalars
     }
 }
