@@ -140,7 +140,8 @@ fn a_pattern_from_elsewhere_measures_like_its_scene() {
 #[test]
 fn a_page_that_repeats_measures_the_same_from_its_file() {
     let desk = Desk::new();
-    let scene = SCENE.replace("paper: white", "paper: white, repeat: true").replace("rect(at: (1, 1), size: (6, 5))", "canvas");
+    let scene =
+        SCENE.replace("paper: white", "paper: white, repeat: true").replace("rect(at: (1, 1), size: (6, 5))", "canvas");
     desk.put("torus.kake", scene.replace("linear(from: (0, 0), to: (8, 0), start: 0, end: 3)", "1.5"));
     desk.put("torus.json", desk.printed(&["ir", "torus.kake", "--stage", "tiles"]));
     let figures = |file| desk.json(&["metrics", file, "--only", "strewn", "--format", "json"])["paints"][0].clone();

@@ -8,12 +8,14 @@ pub mod contrast;
 pub mod correlogram;
 pub mod decay;
 pub mod diversity;
+pub mod grain;
 #[cfg(test)]
 mod known;
 pub mod layers;
 mod measured;
 pub mod read;
 mod runs;
+mod search;
 pub mod space;
 pub mod spectrum;
 pub mod ssim;
@@ -61,6 +63,9 @@ pub struct Measures {
     /// What the layers of tiles make of them.
     #[serde(flatten)]
     pub layers: layers::LayerMeasures,
+    /// How much of a grain the pattern has.
+    #[serde(flatten)]
+    pub grain: grain::Grain,
 }
 
 impl Measures {
@@ -81,6 +86,7 @@ impl Measures {
             correlogram,
             space: space::measure(measured),
             layers: layers::measure(measured),
+            grain: grain::measure(measured),
         }
     }
 
@@ -97,6 +103,7 @@ impl Measures {
         scalars.extend(self.spectrum.scalars());
         scalars.extend(self.space.scalars());
         scalars.extend(self.layers.scalars());
+        scalars.extend(self.grain.scalars());
         scalars
     }
 }
