@@ -12,5 +12,6 @@ mod documents;
 mod examples;
 mod gallery;
 mod ink;
+mod metrics;
 mod repeat;
 mod support;

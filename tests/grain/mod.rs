@@ -1,0 +1,3 @@
+//! Grain over patterns.
+
+mod patterns;
