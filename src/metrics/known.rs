@@ -29,14 +29,12 @@ impl Measured {
             name: "paint".to_owned(),
             seed: 0,
             region: Region::rect(Rect::new(Point::new(0.0, 0.0), Point::new(page[0], page[1]))),
-            graph: Graph::new(tiles, edges, Vec::new()),
-            is_triangulated: true,
             k: vec![1.0; tiles],
             layers: vec![Layers::new(1, 0.0); tiles],
             outlines,
-            period: None,
             sites,
             angles,
+            ..Self::nothing(Graph::new(tiles, edges, Vec::new()))
         }
     }
 }
@@ -74,7 +72,14 @@ pub(super) fn configurations() -> Vec<(String, Measured, Value)> {
 fn measures_are_those_of_the_report() {
     for (name, measured, known) in configurations() {
         let measures = serde_json::to_value(Measures::new(&measured)).unwrap();
-        for (figure, tolerance) in [("e_contrast", 1e-9), ("h_angle", 1e-9), ("xi", 1e-4), ("xi_r2", 1e-4)] {
+        for (figure, tolerance) in [
+            ("e_contrast", 1e-9),
+            ("h_angle", 1e-9),
+            ("xi", 1e-4),
+            ("xi_r2", 1e-4),
+            ("c_cov", 1e-9),
+            ("u_vor", 1e-9),
+        ] {
             let [ours, known] = [&measures, &known].map(|figures| figures[figure].as_f64().unwrap());
             assert!((ours - known).abs() < tolerance, "{name}: {figure} is {known}, not {ours}");
         }
@@ -85,4 +90,14 @@ fn measures_are_those_of_the_report() {
         }
         assert_eq!(measures["pairs"], known["pairs"], "{name}");
     }
+}
+
+#[test]
+fn the_checkerboard_fits_by_its_weights_alone() {
+    let (_, measured, _) = configurations().into_iter().find(|(name, ..)| name == "gridCheckerboard 0").unwrap();
+    let decay = Measures::new(&measured).decay;
+    assert!((decay.xi.unwrap() - 2.047).abs() < 1e-3);
+    assert!((decay.xi_r2.unwrap() + 0.384).abs() < 1e-3);
+    assert!((decay.xi_r2_weighted.unwrap() - 0.881).abs() < 1e-3);
+    assert_eq!(decay.xi_at_bound, Some(false));
 }

@@ -45,7 +45,8 @@ pub struct Measured {
 }
 
 /// What of a paint's region lies where sites were asked for: what is off the canvas has no tiles to be measured.
-fn visible(paint: &Paint, stages: &Stages<'_>) -> Region {
+#[must_use]
+pub fn visible(paint: &Paint, stages: &Stages<'_>) -> Region {
     let (domain, bounds) = (stages.sites.domain, paint.region.bounds());
     if domain.intersection(&bounds) == bounds {
         return paint.region.clone();
@@ -89,8 +90,7 @@ impl Measured {
         }
     }
 
-    /// A graph without anything else, for tests to fill in what they are about.
-    #[cfg(test)]
+    /// A graph and nothing else, for whoever knows only a part of the rest to fill that in.
     pub(crate) fn nothing(graph: Graph) -> Self {
         Self {
             name: String::new(),

@@ -12,8 +12,11 @@ pub mod diversity;
 mod known;
 pub mod layers;
 mod measured;
+pub mod read;
+mod search;
 pub mod space;
 pub mod spectrum;
+pub mod ssim;
 mod statistics;
 mod strokes;
 mod trust;
@@ -22,7 +25,7 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
-pub use measured::Measured;
+pub use measured::{Measured, visible};
 
 /// The single figures of a family by their names, in the order in which tables show them. What cannot be said of a
 /// pattern, such as the contrast of a pattern without links where it is a share of something, is `None`.
