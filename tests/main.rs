@@ -13,4 +13,5 @@ mod examples;
 mod gallery;
 mod ink;
 mod repeat;
+mod statistics;
 mod support;
