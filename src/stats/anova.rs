@@ -46,7 +46,7 @@ pub struct AnovaRow {
 pub fn anova(design: &Factorial) -> Anova {
     let table = Cells::of(design).map(|cells| of_cells(design, &cells));
     table.flatten().unwrap_or_else(|| Anova {
-        note: Some("the design has too many cells for an analysis of variance; leave out a factor".to_owned()),
+        note: Some("the design has too many cells for an analysis of variance: leave out factors or levels".to_owned()),
         ..Anova::default()
     })
 }

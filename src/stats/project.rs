@@ -22,7 +22,7 @@ pub(super) struct Share {
 /// A column that keeps less of its length than this beside others is a sum of them.
 const DEPENDENT: f64 = 1e-9;
 
-/// The operations beyond which a design without balance is not analysed: about a minute's.
+/// The operations beyond which a design is not analysed: some ten seconds'.
 const MOST_WORK: f64 = 1e11;
 
 /// The means of the cells, ready for projections.
