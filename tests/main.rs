@@ -15,4 +15,5 @@ mod gallery;
 mod ink;
 mod paper;
 mod repeat;
+mod statistics;
 mod support;
