@@ -32,6 +32,7 @@ pub mod drawing;
 pub mod experiment;
 pub mod field;
 pub mod geom;
+pub mod illustrate;
 pub mod loader;
 pub mod lower;
 pub mod metrics;

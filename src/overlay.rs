@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use crate::drawing::{Dots, Layer, Strokes};
 use crate::geom::{Angle, Length, Point, ring_bounds};
-use crate::metrics::Measured;
+use crate::metrics::{Measured, space};
 use crate::pass::cut;
 use crate::pass::draw::Stages;
 use crate::region::Region;
@@ -106,7 +106,7 @@ type Area = Vec<Vec<Point>>;
 pub struct Pattern {
     name: String,
     measured: Measured,
-    /// The Voronoi cell of each tile in the region.
+    /// The Voronoi cell of each tile in the region, among the measured sites alone, so that they share it out.
     cells: Vec<Vec<Area>>,
     /// What stands for each tile where it is filled: its outline in the region where tiles lie side by side, else its
     /// cell, for tiles that lie on each other would hide each other's colours.
@@ -122,7 +122,7 @@ impl Pattern {
         let measured = Measured::new(paint, stages);
         let visible = cut::visible(paint, canvas);
         let clipped = |rings: &[Vec<Point>]| rings.par_iter().map(|ring| areas(ring, &visible)).collect();
-        let cells: Vec<Vec<Area>> = clipped(&cut::cells(paint, stages.sites, stages.graph, &stages.tiles));
+        let cells: Vec<Vec<Area>> = clipped(&space::outlines(&measured));
         let bodies = match paint.tone.shape {
             Shape::Voronoi { .. } | Shape::Cell { .. } => clipped(&measured.outlines),
             Shape::Rect { .. }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::support::here;
 
 /// What each part may know of.
-const ARROWS: [(&str, &[&str]); 21] = [
+const ARROWS: [(&str, &[&str]); 22] = [
     ("span", &[]),
     ("geom", &[]),
     ("random", &[]),
@@ -24,6 +24,7 @@ const ARROWS: [(&str, &[&str]); 21] = [
     ("overlay", &["drawing", "geom", "metrics", "pass", "region", "scene"]),
     ("stats", &[]),
     ("chart", &["geom"]),
+    ("illustrate", &["chart", "metrics"]),
     ("back", &["drawing", "geom", "scene"]),
     ("lower", &["syntax", "scene", "region", "field", "loader", "diag", "span", "geom", "random"]),
     (
@@ -41,6 +42,7 @@ const ARROWS: [(&str, &[&str]); 21] = [
             "experiment",
             "field",
             "geom",
+            "illustrate",
             "loader",
             "lower",
             "metrics",

@@ -57,5 +57,6 @@ fn digits(value: f64) -> String {
         size if size >= 10.0 => format!("{value:.1}"),
         _ => format!("{value:.2}"),
     };
-    text.replace('-', "\u{2212}")
+    // What rounds to zero has no sign.
+    if text == "-0.00" { "0.00".to_owned() } else { text.replace('-', "\u{2212}") }
 }

@@ -122,17 +122,15 @@ pub(super) fn cohen(outcome: &Outcome, analysis: &Analysis) -> Option<Figure> {
     let d = |row: usize, column: usize| {
         analysis.cohen_d.iter().find_map(|&(a, b, d)| match (a, b) {
             pair if pair == (row, column) => d,
-            pair if pair == (column, row) => d.map(|d| -d),
+            // Minus zero is zero.
+            pair if pair == (column, row) => d.map(|d| 0.0 - d),
             _ => None,
         })
     };
     let values: Vec<Vec<Option<f64>>> =
         conditions.iter().map(|&row| conditions.iter().map(|&column| d(row, column)).collect()).collect();
     let title = format!("Cohen's d of {measure}: row less column");
-    let texts = |names: &'_ [String]| -> Vec<String> { names.to_vec() };
-    let (rows, columns) = (texts(&names), texts(&numbers));
-    let rows: Vec<&str> = rows.iter().map(String::as_str).collect();
-    let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
+    let [rows, columns] = [&names, &numbers].map(|texts| texts.iter().map(String::as_str).collect::<Vec<_>>());
     let svg = chart::matrix(&Titles { title: &title, x: "", y: "" }, &rows, &columns, &values);
     Some(Figure::new(outcome, analysis.paint, &["cohen_d", measure], svg))
 }
@@ -145,9 +143,15 @@ pub(super) fn correlograms(outcome: &Outcome, paint: usize) -> Vec<Figure> {
         .filter(|analysis| analysis.paint == paint)
         .filter_map(|analysis| Some((distance(&outcome.measures[analysis.measure])?, analysis)))
         .collect();
+    let runs =
+        |condition: usize| outcome.runs.iter().filter(|run| run.paint == paint && run.condition == condition).count();
     let spots = |condition: usize| -> Vec<Spot> {
         let of = |&(k, analysis): &(u32, &Analysis)| {
             let summary = analysis.summaries[condition].as_ref()?;
+            // What only few patterns are wide enough for would stand for those alone.
+            if 2 * summary.n < runs(condition) {
+                return None;
+            }
             let band = summary.sd.map(|sd| [summary.mean - sd, summary.mean + sd]);
             Some(Spot { x: f64::from(k), y: summary.mean, band })
         };
@@ -164,7 +168,11 @@ pub(super) fn correlograms(outcome: &Outcome, paint: usize) -> Vec<Figure> {
     let all = || series.iter().flat_map(|series| &series.spots);
     let edges = all().flat_map(|spot| [spot.y].into_iter().chain(spot.band.into_iter().flatten()));
     let [low, high] = edges.fold([0.0f64, 0.0f64], |[low, high], value| [low.min(value), high.max(value)]);
-    let titles = Titles { title: "Correlogram: mean ± SD over the seeds", x: "distance along the links, k", y: "R_k" };
+    let titles = Titles {
+        title: "Correlogram: mean ± SD over the seeds, as far as half of the runs reach",
+        x: "distance along the links, k",
+        y: "R_k",
+    };
     let parts = series.chunks(TOGETHER).enumerate().map(|(number, series)| {
         let svg = chart::lines(&titles, series, Some([low, high]));
         let number = (number + 1).to_string();

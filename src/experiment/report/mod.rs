@@ -17,7 +17,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 pub use figures::Figure;
 
 use super::{Analysis, Outcome, Picture, Recipe};
-use words::distance;
+use words::{Goal, distance};
 
 /// The style of the page.
 const STYLE: &str = include_str!("style.css");
@@ -148,6 +148,8 @@ fn contents(outcome: &Outcome, paints: &[Charts<'_>]) -> Markup {
 fn paint(outcome: &Outcome, charts: &Charts<'_>) -> Markup {
     let at = |name: &str| anchor(outcome, charts.paint, name);
     let [near, far] = charts.parts();
+    // One is open, to show what the others hold.
+    let open = near.iter().position(|measure| Goal::of(measure.name).is_some()).unwrap_or(0);
     html! {
         @if outcome.paints.len() > 1 {
             h2 id=(at("paint")) { "Paint " code { (outcome.paints[charts.paint]) } }
@@ -168,7 +170,7 @@ fn paint(outcome: &Outcome, charts: &Charts<'_>) -> Markup {
         }
         h2 id=(at("measures")) { "Measures" }
         @for (i, measure) in near.iter().enumerate() {
-            (statistics::measure(outcome, measure, &at(&format!("m-{}", measure.name)), i < 1))
+            (statistics::measure(outcome, measure, &at(&format!("m-{}", measure.name)), i == open))
         }
         @if !far.is_empty() {
             details {

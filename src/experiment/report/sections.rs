@@ -32,7 +32,7 @@ pub(super) fn head(recipe: &Recipe, outcome: &Outcome) -> Markup {
         }
         div.scroll {
             table {
-                thead { tr { th { "Factor" } th { "Levels" } } }
+                thead { tr { th { "Factor" } th.name { "Levels" } } }
                 tbody {
                     @for factor in &plan.factors {
                         tr { th { code { (factor.param) } } td.name { (factor.levels.join(", ")) } }
@@ -134,7 +134,7 @@ pub(super) fn made(recipe: &Recipe, outcome: &Outcome) -> Markup {
         }
         div.scroll {
             table {
-                thead { tr { th { "Condition" } th { "Sets" } th { "Runs" } th { "Shown by seed" } } }
+                thead { tr { th { "Condition" } th.name { "Sets" } th { "Runs" } th { "Shown by seed" } } }
                 tbody {
                     @for (number, condition) in outcome.plan.conditions.iter().enumerate() {
                         tr {

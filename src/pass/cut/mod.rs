@@ -165,18 +165,6 @@ pub(crate) fn visible(paint: &Paint, canvas: &Canvas) -> Region {
     if is_on_canvas { paint.region.clone() } else { paint.region.intersection(&Region::rect(page)) }
 }
 
-/// The Voronoi cell of every tile that is measured, among all sites of the paint. Sites, links and tiles belong to it.
-pub(crate) fn cells(paint: &Paint, sites: &Sites, graph: &Graph, tiles: &Tiles) -> Vec<Vec<Point>> {
-    let links = link::delaunay_links(sites, graph, paint.tone.link);
-    let cells = voronoi::Cells::new(sites, &links, Length::ZERO, Length::ZERO);
-    let outline = |tile: usize| {
-        let mut ring = Vec::new();
-        cells.outline(tile, &mut ring, &mut Vec::new());
-        ring
-    };
-    (0..tiles.len()).into_par_iter().filter(|&tile| tiles.inside[tile]).map(outline).collect()
-}
-
 /// A region that lies in the first period with its images in all periods next to it.
 fn repeated(region: &Region, period: Period) -> Region {
     let page = period.area();
