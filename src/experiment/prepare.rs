@@ -36,7 +36,7 @@ pub struct Prepared {
 pub fn prepare<L: Loader>(path: &str, loader: &L, config: &Config, request: &Request) -> Prepared {
     let recorder = Recorder::new(loader);
     // Every run has a seed of its own.
-    let config = Config { lower: LowerConfig { seed: None, ..config.lower.clone() }, only: config.only.clone() };
+    let config = Config { lower: LowerConfig { seed: None, ..config.lower.clone() }, ..config.clone() };
     let mut lowered = lower(path, &recorder, &config.lower);
     let Some(planned) = lowered.scene.as_ref().map(|scene| plan(scene, &config, request)) else {
         return Prepared { lowered, ready: None };

@@ -72,14 +72,9 @@ pub(super) fn configurations() -> Vec<(String, Measured, Value)> {
 fn measures_are_those_of_the_report() {
     for (name, measured, known) in configurations() {
         let measures = serde_json::to_value(Measures::new(&measured)).unwrap();
-        for (figure, tolerance) in [
-            ("e_contrast", 1e-9),
-            ("h_angle", 1e-9),
-            ("xi", 1e-4),
-            ("xi_r2", 1e-4),
-            ("c_cov", 1e-9),
-            ("u_vor", 1e-9),
-        ] {
+        for (figure, tolerance) in
+            [("e_contrast", 1e-9), ("h_angle", 1e-9), ("xi", 1e-4), ("xi_r2", 1e-4), ("c_cov", 1e-9), ("u_vor", 1e-9)]
+        {
             let [ours, known] = [&measures, &known].map(|figures| figures[figure].as_f64().unwrap());
             assert!((ours - known).abs() < tolerance, "{name}: {figure} is {known}, not {ours}");
         }

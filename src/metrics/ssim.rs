@@ -113,8 +113,16 @@ mod tests {
         let stripes = grey(40, 30, |x, y| if (x + 2 * y) % 7 < 3 { 20 } else { 235 });
         let shifted = grey(40, 30, |x, y| if (x + 2 * y + 1) % 7 < 3 { 20 } else { 235 });
         let ramp = grey(40, 30, |x, y| (x * 5 + y) as u8);
-        assert!((ssim(&stripes, &shifted).unwrap() - 0.418_144_633_163_812_45).abs() < 1e-6, "{:?}", ssim(&stripes, &shifted));
-        assert!((ssim(&stripes, &ramp).unwrap() - 0.004_549_245_270_111_344).abs() < 1e-6, "{:?}", ssim(&stripes, &ramp));
+        assert!(
+            (ssim(&stripes, &shifted).unwrap() - 0.418_144_633_163_812_45).abs() < 1e-6,
+            "{:?}",
+            ssim(&stripes, &shifted)
+        );
+        assert!(
+            (ssim(&stripes, &ramp).unwrap() - 0.004_549_245_270_111_344).abs() < 1e-6,
+            "{:?}",
+            ssim(&stripes, &ramp)
+        );
     }
 
     proptest! {

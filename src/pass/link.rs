@@ -11,7 +11,7 @@ use std::borrow::Cow;
 
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
-use crate::geom::{Point, Rect, Vec2};
+use crate::geom::{Point, Rect, Vec2, hilbert};
 use crate::scene::Link;
 use crate::stage::{Graph, Sites};
 
