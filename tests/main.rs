@@ -14,4 +14,5 @@ mod gallery;
 mod ink;
 mod metrics;
 mod repeat;
+mod statistics;
 mod support;
