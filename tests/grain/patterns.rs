@@ -20,14 +20,14 @@ pub(crate) struct Page {
     pub(crate) region: &'static str,
     /// How far tiles go on beyond it, in tiles.
     pub(crate) bleed: f64,
-    /// Whether it repeats: `off` or `both`.
-    pub(crate) repeat: &'static str,
+    /// Whether it repeats.
+    pub(crate) repeat: bool,
 }
 
 impl Page {
     /// The report's page: a square without bleed.
     pub(crate) const fn square(tiles: u32) -> Self {
-        Self { size: [60.0, 60.0], tiles, region: "canvas", bleed: 0.0, repeat: "off" }
+        Self { size: [60.0, 60.0], tiles, region: "canvas", bleed: 0.0, repeat: false }
     }
 
     /// The distance of sites in millimetres: the square root of a tile's share of the page.
