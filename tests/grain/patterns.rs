@@ -196,12 +196,9 @@ impl Pattern {
         let a = page.spacing();
         let place = match self.sites {
             Sites::Place(text) => text,
-            Sites::Lattice { .. }
-            | Sites::Sunflower
-            | Sites::Halton
-            | Sites::R2
-            | Sites::Clumps
-            | Sites::Copies(_) => "uniform(count: 1)",
+            Sites::Lattice { .. } | Sites::Sunflower | Sites::Halton | Sites::R2 | Sites::Clumps | Sites::Copies(_) => {
+                "uniform(count: 1)"
+            }
         };
         let place = place
             .replace("{r}", &page.radius().to_string())
@@ -368,13 +365,11 @@ impl Turn {
             }
             Self::Unguarded => unguarded(measured, &mut random),
             Self::Chequers => by_place(&|x, y| 90.0 * (x.floor() + y.floor()).rem_euclid(2.0)),
-            Self::Thirds => {
-                by_place(&|x, y| {
-                    let row = ((y - 1.0 / 3.0) / HEX[1][1] - 0.5).round();
-                    let column = ((x - 1.0 / 3.0 - (row + 0.5) * HEX[1][0]) / HEX[0][0] - 0.5).round();
-                    60.0 * (column - row).rem_euclid(3.0)
-                })
-            }
+            Self::Thirds => by_place(&|x, y| {
+                let row = ((y - 1.0 / 3.0) / HEX[1][1] - 0.5).round();
+                let column = ((x - 1.0 / 3.0 - (row + 0.5) * HEX[1][0]) / HEX[0][0] - 0.5).round();
+                60.0 * (column - row).rem_euclid(3.0)
+            }),
         }
     }
 }
@@ -402,7 +397,8 @@ fn four_colours(measured: &Measured) -> Vec<u8> {
         let free = |colours: &[u8]| (0..NONE).find(|colour| !around(colours).contains(colour));
         let pairs = (0..NONE).flat_map(|one| (0..NONE).map(move |two| [one, two])).filter(|[one, two]| one != two);
         let swaps = pairs.flat_map(|pair| graph.neighbours(tile).iter().map(move |&start| (pair, start as usize)));
-        let tried = std::iter::once(colours.clone()).chain(swaps.map(|(pair, start)| exchanged(measured, &colours, pair, start)));
+        let tried = std::iter::once(colours.clone())
+            .chain(swaps.map(|(pair, start)| exchanged(measured, &colours, pair, start)));
         let found = tried.into_iter().find(|colours| free(colours).is_some());
         colours = found.unwrap_or(colours);
         colours[tile] = free(&colours).unwrap_or(0);

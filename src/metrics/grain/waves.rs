@@ -126,8 +126,7 @@ impl Table {
         let units: Vec<(f64, f64)> = places.map(|x| libm::sincos(x * step)).collect();
         let width = units.len().next_multiple_of(LANES);
         let multiples = (most / step) as usize + 1;
-        let mut table =
-            Self { width, cosines: vec![0.0; width * multiples], sines: vec![0.0; width * multiples] };
+        let mut table = Self { width, cosines: vec![0.0; width * multiples], sines: vec![0.0; width * multiples] };
         table.cosines[..units.len()].fill(1.0);
         for entry in 0..width * (multiples - 1) {
             let Some(&(sin, cos)) = units.get(entry % width) else { continue };
