@@ -184,6 +184,9 @@ pub struct ParamValue {
     /// The number: millimetres, radians, shares of one, plain.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub number: Option<f64>,
+    /// The characters of a string.
+    #[serde(skip)]
+    pub string: Option<String>,
 }
 
 /// What a parameter may be.
@@ -581,10 +584,19 @@ pub struct Limits {
     pub megapixels: u64,
     /// Depth of brackets, blocks and calls.
     pub nesting: u64,
+    /// Runs of an experiment, and pictures of it.
+    pub runs: u64,
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { tiles: 2_000_000, strokes: 50_000_000, iterations: 1_000_000, megapixels: 400, nesting: 128 }
+        Self {
+            tiles: 2_000_000,
+            strokes: 50_000_000,
+            iterations: 1_000_000,
+            megapixels: 400,
+            nesting: 128,
+            runs: 1_000_000,
+        }
     }
 }

@@ -1,14 +1,22 @@
 //! What metrics read of a pattern: the tiles whose sites lie in the region, numbered anew, and the links among them.
 
 use crate::geom::{Angle, Period, Point};
-use crate::pass::draw::Stages;
+use crate::pass::cut::inked;
+use crate::pass::draw::{Stages, tangents};
 use crate::region::Region;
 use crate::scene::{Link, Paint};
 use crate::stage::{Graph, Layers};
 
-/// A pattern as it is measured. All lists have one entry a tile.
+use super::strokes::Strokes;
+
+/// A pattern as it is measured. All lists have one entry a tile, but those of which nothing is known are empty: a pattern
+/// of another program need not say what it draws.
 #[derive(Debug, Clone)]
 pub struct Measured {
+    /// The paint's name; with the seed it keys what is drawn at random where only a sample can be looked at.
+    pub name: String,
+    /// The scene's seed or the paint's own.
+    pub seed: u64,
     /// What the tiles fill.
     pub region: Region,
     /// Where they lie, in millimetres.
@@ -26,8 +34,24 @@ pub struct Measured {
     pub layers: Vec<Layers>,
     /// The outline of each tile as cut; empty where an inset left nothing.
     pub outlines: Vec<Vec<Point>>,
+    /// The directions, in [0, pi), in which the strokes of each tile leave it backwards and forwards along its angle.
+    pub tangents: Vec<[Angle; 2]>,
+    /// The share of the paper that each tile's layers ink, in [0, 1].
+    pub ink: Vec<f64>,
+    /// How evenly the strokes of each tile run in all directions, in [0, 1]; none without strokes.
+    pub isotropy: Vec<Option<f64>>,
     /// On a page that repeats: the period.
     pub period: Option<Period>,
+}
+
+/// What of a paint's region lies where sites were asked for: what is off the canvas has no tiles to be measured.
+#[must_use]
+pub fn visible(paint: &Paint, stages: &Stages<'_>) -> Region {
+    let (domain, bounds) = (stages.sites.domain, paint.region.bounds());
+    if domain.intersection(&bounds) == bounds {
+        return paint.region.clone();
+    }
+    paint.region.intersection(&Region::rect(domain))
 }
 
 impl Measured {
@@ -44,16 +68,45 @@ impl Measured {
         let triangles = stages.graph.triangles.iter();
         let triangles = triangles.filter_map(|&[a, b, c]| Some([number(a)?, number(b)?, number(c)?])).collect();
         let period = stages.sites.period();
+        let layers: Vec<Layers> = inside.iter().map(|&tile| stages.tiles.layers[tile]).collect();
+        let outlines: Vec<Vec<Point>> = inside.iter().map(|&tile| stages.tiles.outline(tile).to_vec()).collect();
+        let tangents = tangents(paint, stages);
+        let strokes = Strokes::of(&paint.tone.fill);
         Self {
-            region: paint.region.clone(),
+            name: paint.name.clone(),
+            seed: paint.seed,
+            region: visible(paint, stages),
             sites: inside.iter().map(|&tile| stages.sites.points[tile]).collect(),
             graph: Graph::new(inside.len(), &edges, triangles),
             is_triangulated: paint.tone.link == Link::Delaunay && period.is_none(),
             angles: inside.iter().map(|&tile| stages.angles.0[tile]).collect(),
             k: inside.iter().map(|&tile| stages.tiles.k[tile]).collect(),
-            layers: inside.iter().map(|&tile| stages.tiles.layers[tile]).collect(),
-            outlines: inside.iter().map(|&tile| stages.tiles.outline(tile).to_vec()).collect(),
+            tangents: inside.iter().map(|&tile| tangents[tile]).collect(),
+            ink: inked(paint, &layers, &outlines),
+            isotropy: layers.iter().map(|&layers| strokes.isotropy(layers)).collect(),
+            layers,
+            outlines,
             period,
+        }
+    }
+
+    /// A graph and nothing else, for whoever knows only a part of the rest to fill that in.
+    pub(crate) fn nothing(graph: Graph) -> Self {
+        Self {
+            name: String::new(),
+            seed: 0,
+            region: Region::empty(),
+            sites: Vec::new(),
+            graph,
+            is_triangulated: false,
+            angles: Vec::new(),
+            k: Vec::new(),
+            layers: Vec::new(),
+            outlines: Vec::new(),
+            tangents: Vec::new(),
+            ink: Vec::new(),
+            isotropy: Vec::new(),
+            period: None,
         }
     }
 

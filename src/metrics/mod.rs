@@ -5,14 +5,25 @@
 //! [`Measures`]; the names are those that tables, JSON and experiments print.
 
 pub mod contrast;
+pub mod correlogram;
+pub mod decay;
 pub mod diversity;
+#[cfg(test)]
+mod known;
+pub mod layers;
 mod measured;
+pub mod read;
+pub mod space;
+pub mod spectrum;
+pub mod ssim;
+mod strokes;
+mod trust;
 
 use std::borrow::Cow;
 
 use serde::Serialize;
 
-pub use measured::Measured;
+pub use measured::{Measured, visible};
 
 /// The single figures of a family by their names, in the order in which tables show them. What cannot be said of a
 /// pattern, such as the contrast of a pattern without links where it is a share of something, is `None`.
@@ -31,17 +42,43 @@ pub struct Measures {
     /// How many directions there are.
     #[serde(flatten)]
     pub diversity: diversity::Diversity,
+    /// Contrast and diversity in one: `e_contrast` times `h_angle`, in [0, 1].
+    pub joint: f64,
+    /// How alike tiles are turned, by their distance.
+    #[serde(flatten)]
+    pub correlogram: correlogram::Correlogram,
+    /// How fast that fades.
+    #[serde(flatten)]
+    pub decay: decay::Decay,
+    /// With which period it repeats.
+    #[serde(flatten)]
+    pub spectrum: spectrum::Spectrum,
+    /// How evenly tiles lie, and how much of the region they cover.
+    #[serde(flatten)]
+    pub space: space::Space,
+    /// What the layers of tiles make of them.
+    #[serde(flatten)]
+    pub layers: layers::LayerMeasures,
 }
 
 impl Measures {
     /// Measures a pattern.
     #[must_use]
     pub fn new(measured: &Measured) -> Self {
+        let contrast = contrast::measure(measured);
+        let diversity = diversity::measure(measured);
+        let correlogram = correlogram::measure(measured);
         Self {
             tiles: measured.sites.len(),
             edges: measured.graph.edges().count(),
-            contrast: contrast::measure(measured),
-            diversity: diversity::measure(measured),
+            joint: contrast.e_contrast * diversity.h_angle,
+            contrast,
+            diversity,
+            decay: decay::measure(&correlogram),
+            spectrum: spectrum::measure(&correlogram),
+            correlogram,
+            space: space::measure(measured),
+            layers: layers::measure(measured),
         }
     }
 
@@ -52,8 +89,19 @@ impl Measures {
             vec![("tiles".into(), Some(self.tiles as f64)), ("edges".into(), Some(self.edges as f64))];
         scalars.extend(self.contrast.scalars());
         scalars.extend(self.diversity.scalars());
+        scalars.push(("joint".into(), Some(self.joint)));
+        scalars.extend(self.correlogram.scalars());
+        scalars.extend(self.decay.scalars());
+        scalars.extend(self.spectrum.scalars());
+        scalars.extend(self.space.scalars());
+        scalars.extend(self.layers.scalars());
         scalars
     }
+}
+
+/// The mean, summed in order; none of no numbers.
+fn mean(values: &[f64]) -> Option<f64> {
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
 #[cfg(test)]

@@ -12,8 +12,8 @@ mod tile;
 
 use crate::diag::{Code, Diagnostic};
 use crate::field::{Field, Node};
-use crate::geom::Point;
-use crate::scene::{Canvas, Darkness, Paint, Range};
+use crate::geom::{Length, Point};
+use crate::scene::{Asked, Canvas, Darkness, Paint, Range};
 use crate::stage::{Angles, Graph, Layers, Sites, Standing, Tiles};
 
 use super::layers::MOST;
@@ -99,6 +99,21 @@ pub(super) fn reckon(bed: &Bed<'_>) -> f64 {
     if area > 0.0 { cover.on_paper(ink / area) } else { 0.0 }
 }
 
+/// The share of a large area that tiles with layers cover, as wide as pens are. `radius` is that of a disc as large as a tile.
+pub(super) fn shares(paint: &Paint, layers: &[Layers], radius: Length) -> Vec<f64> {
+    let fills = &paint.tone.fill;
+    let levels = ink::levels(fills, Length::ZERO, &[1.0; LAYERS], radius);
+    let kind = |number: u8| fills.get(usize::from(number.saturating_sub(1))).or(fills.last()).map(|fill| &fill.kind);
+    let share = |&layers: &Layers| {
+        ink::of_layers(&levels, layers, |number, density| match paint.tone.asked {
+            // A share of the lines.
+            Asked::K(_) => density,
+            Asked::Darkness(_) => kind(number).map_or(0.0, |kind| ink::inked(kind, Length::ZERO, density)),
+        })
+    };
+    layers.iter().map(share).collect()
+}
+
 /// The neighbours of a site that come after it.
 fn later(graph: &Graph, site: usize) -> &[u32] {
     // Neighbours ascend.
@@ -161,11 +176,10 @@ fn too_dark(bed: &Bed<'_>, fitted: &[f64], greatest: f64, solid: f64) -> Option<
 mod tests {
     use super::*;
     use crate::field::Function;
-    use crate::geom::Length;
     use crate::pass::fixture::{canvas, paint};
     use crate::pass::{cut, link, place, turn};
     use crate::region::Region;
-    use crate::scene::{AngleRule, Asked, Bfs, Limits, Placement, Shape};
+    use crate::scene::{AngleRule, Bfs, Limits, Placement, Shape};
 
     fn cells(field: Field, range: Range, solid: Option<f64>) -> (Canvas, Paint) {
         let canvas = canvas(4.0, 4.0);

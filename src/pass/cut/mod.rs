@@ -16,7 +16,7 @@ use std::borrow::Cow;
 use rayon::prelude::*;
 
 use crate::diag::{Code, Diagnostic};
-use crate::geom::{Figure, Length, Period, Pieces, Point, Rect, Vec2};
+use crate::geom::{Figure, Length, Period, Pieces, Point, Rect, Vec2, ring_area};
 use crate::pass::link;
 use crate::region::{FillRule, Region};
 use crate::scene::{Asked, Blend, Canvas, Edge, Paint, Range, Shape};
@@ -140,6 +140,17 @@ pub fn cut(
 #[must_use]
 pub fn reckon(paint: &Paint, canvas: &Canvas, sites: &Sites, graph: &Graph, angles: &Angles, tiles: &Tiles) -> f64 {
     darkness::reckon(&Bed { paint, canvas, sites, graph, angles, tiles })
+}
+
+/// The share of the paper that layers of a paint ink, in [0, 1]: what they cover of a large area, as wide as pens are. Ink
+/// that spreads, later tiles that hide it and lines that a tile's edge cuts off do not count. `outlines` are those of the
+/// tiles.
+#[must_use]
+pub fn inked(paint: &Paint, layers: &[Layers], outlines: &[Vec<Point>]) -> Vec<f64> {
+    let area: f64 = outlines.iter().map(|outline| ring_area(outline).abs()).sum();
+    let radius = (area / outlines.len().max(1) as f64 / std::f64::consts::PI).sqrt();
+    // Where there is no tile there is nothing to reckon.
+    darkness::shares(paint, layers, Length::mm(if radius > 0.0 { radius } else { 1.0 }))
 }
 
 /// The part of a paint's region that lies on the canvas: what is off the canvas is neither drawn nor measured. Where the

@@ -10,6 +10,8 @@ use crate::geom::Length;
 use crate::scene::{Fill, FillKind, Hatch};
 
 use super::super::layers::MOST;
+use super::NEAR;
+use crate::stage::Layers;
 
 /// Samples along a side of a field of dots that grow together.
 const SAMPLES: u32 = 128;
@@ -126,6 +128,59 @@ pub(super) fn levels(
         levels[n] = f64::max(levels[n - 1], 1.0 - bare);
     }
     levels
+}
+
+/// The share of ink that layers have, from the share that 0 to 4 full ones cover. `drawn` says what of a full layer is drawn
+/// in one, by its number, that stands so densely.
+pub(super) fn of_layers(
+    levels: &[f64; MOST as usize + 1],
+    layers: Layers,
+    mut drawn: impl FnMut(u8, f64) -> f64,
+) -> f64 {
+    if layers.is_solid {
+        return 1.0;
+    }
+    let full = usize::from(layers.full).min(MOST as usize);
+    let Some(&above) = levels.get(full + 1) else { return levels[full] };
+    if layers.last < 1.0
+        && let Some((bare, [last, next])) = steps(levels, full)
+    {
+        let last = 1.0 - last * drawn(full as u8, layers.last);
+        return 1.0 - bare * last * (1.0 - next * drawn(full as u8 + 1, layers.part));
+    }
+    let drawn = if layers.part <= NEAR { 0.0 } else { drawn(full as u8 + 1, layers.part) };
+    levels[full] + (above - levels[full]) * drawn
+}
+
+/// What is bare under the last of some full layers, and what that one and the next cover of what is bare under each.
+pub(super) fn steps(levels: &[f64; MOST as usize + 1], full: usize) -> Option<(f64, [f64; 2])> {
+    let bare = 1.0 - levels.get(full.checked_sub(1)?)?;
+    let covered = 1.0 - levels.get(full)?;
+    let all = 1.0 - levels.get(full + 1)?;
+    let is_worth = bare > NEAR && covered > NEAR && bare - covered > NEAR;
+    is_worth.then(|| (bare, [1.0 - covered / bare, 1.0 - all / covered]))
+}
+
+/// What of the ink of a full layer of a fill a layer of this density has: loops of scribble that stand farther apart lie less
+/// on each other.
+pub(super) fn inked(kind: &FillKind, gain: Length, density: f64) -> f64 {
+    heaped(kind, gain).map_or(density, |full| (1.0 - libm::pow(1.0 - full, density)) / full)
+}
+
+/// The share of the paper that a full layer of a fill covers whose own marks lie on each other by chance; none for others.
+pub(super) fn heaped(kind: &FillKind, gain: Length) -> Option<f64> {
+    match kind {
+        FillKind::Scribble { .. } => Some(share(kind, gain)).filter(|&full| full > 0.0 && full < 1.0),
+        FillKind::Lines(_)
+        | FillKind::Dashes { .. }
+        | FillKind::Dots { .. }
+        | FillKind::Crosses { .. }
+        | FillKind::Arcs(_)
+        | FillKind::Waves { .. }
+        | FillKind::Nawaami { .. }
+        | FillKind::Motif { .. }
+        | FillKind::Solid => None,
+    }
 }
 
 /// The share of a disc that layers of dashes cover together which are set like bricks from its middle.

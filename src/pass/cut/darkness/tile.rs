@@ -127,7 +127,7 @@ impl<'a> Reckoner<'a> {
             | FillKind::Motif { .. }
             | FillKind::Solid => false,
         };
-        let (bare, [below, above]) = self.steps(full)?;
+        let (bare, [below, above]) = ink::steps(&self.levels, full)?;
         if !is_stroked(full) || !is_stroked(full + 1) {
             return None;
         }
@@ -140,64 +140,22 @@ impl<'a> Reckoner<'a> {
         Some((layers, self.ink(tile, layers)))
     }
 
-    /// What is bare under the last of some full layers, and what that one and the next cover of what is bare under each.
-    fn steps(&self, full: usize) -> Option<(f64, [f64; 2])> {
-        let bare = 1.0 - self.levels.get(full.checked_sub(1)?)?;
-        let covered = 1.0 - self.levels.get(full)?;
-        let all = 1.0 - self.levels.get(full + 1)?;
-        let is_worth = bare > NEAR && covered > NEAR && bare - covered > NEAR;
-        is_worth.then(|| (bare, [1.0 - covered / bare, 1.0 - all / covered]))
-    }
-
     /// The share of ink that a tile has of its layers.
     pub(super) fn ink(&mut self, tile: usize, layers: Layers) -> f64 {
-        if layers.is_solid {
-            return 1.0;
-        }
-        let full = usize::from(layers.full).min(LAYERS);
-        let Some(&above) = self.levels.get(full + 1) else { return self.levels[full] };
-        if layers.last < 1.0
-            && let Some((bare, [last, next])) = self.steps(full)
-        {
-            let last = 1.0 - last * self.drawn(tile, full as u8, layers.last);
-            return 1.0 - bare * last * (1.0 - next * self.drawn(tile, full as u8 + 1, layers.part));
-        }
-        let drawn = match self.bed.paint.tone.asked {
-            _ if layers.part <= NEAR => 0.0,
-            Asked::K(_) => layers.part,
-            Asked::Darkness(_) => self.drawn(tile, full as u8 + 1, layers.part),
-        };
-        self.levels[full] + (above - self.levels[full]) * drawn
+        let levels = self.levels;
+        let is_thinned = matches!(self.bed.paint.tone.asked, Asked::Darkness(_));
+        ink::of_layers(&levels, layers, |number, density| {
+            // What is a share of the lines is drawn as it is.
+            if is_thinned { self.drawn(tile, number, density) } else { density }
+        })
     }
 
     /// How densely a layer stands that has a share of the ink of a full one: loops of scribble that stand farther apart lie
     /// less on each other.
     fn density(&self, number: u8, share: f64) -> f64 {
         // A full layer covers 1 - exp(-n) of the paper with n times its area of ink.
-        self.heaped(number).map_or(share, |full| libm::log(1.0 - share * full) / libm::log(1.0 - full))
-    }
-
-    /// What of the ink of a full layer a layer of this density has, the other way round.
-    fn inked(&self, number: u8, density: f64) -> f64 {
-        self.heaped(number).map_or(density, |full| (1.0 - libm::pow(1.0 - full, density)) / full)
-    }
-
-    /// The share of the paper that a full layer covers whose own marks lie on each other by chance; none for other fills.
-    fn heaped(&self, number: u8) -> Option<f64> {
-        match self.kind(number) {
-            kind @ FillKind::Scribble { .. } => {
-                Some(ink::share(kind, self.bed.canvas.gain)).filter(|&full| full > 0.0 && full < 1.0)
-            }
-            FillKind::Lines(_)
-            | FillKind::Dashes { .. }
-            | FillKind::Dots { .. }
-            | FillKind::Crosses { .. }
-            | FillKind::Arcs(_)
-            | FillKind::Waves { .. }
-            | FillKind::Nawaami { .. }
-            | FillKind::Motif { .. }
-            | FillKind::Solid => None,
-        }
+        let full = ink::heaped(self.kind(number), self.bed.canvas.gain);
+        full.map_or(share, |full| libm::log(1.0 - share * full) / libm::log(1.0 - full))
     }
 
     /// What of a full layer is drawn in a tile if it is thinned to `part`: about that much, but in whole lines or dots.
@@ -209,7 +167,9 @@ impl<'a> Reckoner<'a> {
             | FillKind::Dashes { hatch, .. }
             | FillKind::Waves { hatch, .. }
             | FillKind::Scribble { hatch, .. }
-            | FillKind::Nawaami { hatch, .. } => self.inked(number, part) * self.lines(tile, number, hatch) / held,
+            | FillKind::Nawaami { hatch, .. } => {
+                ink::inked(self.kind(number), self.bed.canvas.gain, part) * self.lines(tile, number, hatch) / held
+            }
             FillKind::Dots { hatch, spacing, radius } if number == 1 => {
                 let area = hatch.pitch.to_mm() * spacing.to_mm();
                 let is_few = self.yard_area(tile) < FINE * FINE * area;

@@ -112,6 +112,27 @@ impl LinkCosts {
     }
 }
 
+/// A triangle as wide as a bin of twelve and 1 high about fine bin [`FINE`], and its images a half-turn away.
+static TRIANGLE: [f32; 2 * FINE] = {
+    let mut heights = [0.0; 2 * FINE];
+    let mut place = 0;
+    while place < WIDTH {
+        let height = (WIDTH - place) as f32 / WIDTH as f32;
+        heights[place] = height;
+        heights[FINE - place] = height;
+        heights[FINE + place] = height;
+        heights[2 * FINE - 1 - place] = if place + 1 < WIDTH { (WIDTH - place - 1) as f32 / WIDTH as f32 } else { 0.0 };
+        place += 1;
+    }
+    heights
+};
+
+/// The height of the triangle about a bin at each of the bins.
+fn triangle(bin: u8) -> &'static [f32] {
+    let start = FINE - usize::from(bin);
+    &TRIANGLE[start..start + FINE]
+}
+
 /// How many of a patch's tiles lie near every direction: for each fine bin, the sum of a triangle as wide as a bin of
 /// twelve over the tiles.
 pub(super) struct Crowd {
@@ -122,23 +143,22 @@ impl Crowd {
     /// Of no tiles.
     pub(super) const NONE: Self = Self { near: [0.0; FINE] };
 
-    /// The triangle, 1 in the middle.
-    fn triangle(distance: usize) -> f32 {
-        (WIDTH - distance.min(WIDTH)) as f32 / WIDTH as f32
+    /// Adds a tile.
+    pub(super) fn add(&mut self, bin: u8) {
+        for (near, height) in self.near.iter_mut().zip(triangle(bin)) {
+            *near += height;
+        }
     }
 
-    /// Adds a tile, or with -1 takes one away.
-    pub(super) fn add(&mut self, bin: u8, count: f32) {
-        for place in 0..2 * WIDTH - 1 {
-            let at = (usize::from(bin) + FINE + 1 - WIDTH + place) % FINE;
-            self.near[at] += count * Self::triangle(place.abs_diff(WIDTH - 1));
+    /// Takes a tile from one bin to another.
+    pub(super) fn turn(&mut self, from: u8, to: u8) {
+        for ((near, less), more) in self.near.iter_mut().zip(triangle(from)).zip(triangle(to)) {
+            *near += more - less;
         }
     }
 
     /// By how much the sum over all ordered pairs of tiles grows when a tile goes from one bin to another.
     pub(super) fn grows(&self, from: u8, to: u8) -> f32 {
-        let apart = usize::from(from.abs_diff(to));
-        let apart = apart.min(FINE - apart);
-        2.0 * (self.near[usize::from(to)] - self.near[usize::from(from)] + 1.0 - Self::triangle(apart))
+        2.0 * (self.near[usize::from(to)] - self.near[usize::from(from)] + 1.0 - triangle(from)[usize::from(to)])
     }
 }

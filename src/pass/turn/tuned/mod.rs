@@ -117,7 +117,7 @@ impl Stir<'_> {
         let mut own = Own { first: sites.start, steps: all[sites.clone()].to_vec() };
         let mut crowd = Crowd::NONE;
         for &step in &own.steps {
-            crowd.add(costs.bins[usize::from(step)], 1.0);
+            crowd.add(costs.bins[usize::from(step)]);
         }
         let mut away = [&self.links.second, &self.links.third].map(|lists| Away::new(lists, all, &sites, costs));
         let diversity = costs.diversity * 12.0 / tiles;
@@ -151,11 +151,10 @@ impl Stir<'_> {
                     let grown = f64::from(other_cost - cost)
                         + diversity * f64::from(crowd.grows(from, to))
                         + grain * (away[0].grows(changes[0]) + away[1].grows(changes[1]));
-                    let is_taken = grown <= 0.0
-                        || (grown < patience && tables[place].unit(draw + 1) < libm::exp(-grown / heat));
+                    let is_taken =
+                        grown <= 0.0 || (grown < patience && is_less(tables[place].unit(draw + 1), grown / heat));
                     if is_taken && step != other {
-                        crowd.add(from, -1.0);
-                        crowd.add(to, 1.0);
+                        crowd.turn(from, to);
                         for (away, change) in away.iter_mut().zip(changes) {
                             away.sum += change;
                         }
@@ -181,6 +180,12 @@ impl Stir<'_> {
         let heat = if part < COLD { between(HEAT, part / COLD) } else { 0.0 };
         (heat, between(REACH, part))
     }
+}
+
+/// Whether a number in [0, 1) is less than exp(-x) of an x that is not negative. Bounds that are quickly had decide
+/// most cases.
+fn is_less(number: f64, x: f64) -> bool {
+    number < 1.0 - x || (number * (1.0 + x) < 1.0 && number < libm::exp(-x))
 }
 
 /// The steps of a patch's own sites.
