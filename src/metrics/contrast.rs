@@ -4,12 +4,13 @@ use std::f64::consts::FRAC_2_PI;
 
 use serde::Serialize;
 
-use super::{Measured, Scalars, statistics};
+use super::{Measured, Scalars, mean};
 use crate::geom::{Angle, Vec2};
 use crate::stage::Graph;
+use crate::stats::percentile;
 
-/// The share of the links that may have less contrast than the figure that tells whether tiles run together.
-const FIFTH: f64 = 0.05;
+/// The per cent of the links that may have less contrast than the figure that tells whether tiles run together.
+const FIFTH: f64 = 5.0;
 
 /// An end of a strand counts as facing a neighbour that lies beside it by less than this sine of an angle.
 const BESIDE: f64 = 1e-9;
@@ -63,22 +64,21 @@ impl Contrast {
 /// Measures the contrasts.
 #[must_use]
 pub fn measure(measured: &Measured) -> Contrast {
-    let mut contrasts: Vec<f64> = measured.graph.edges().map(|edge| measured.contrast(edge)).collect();
-    let e_contrast = statistics::mean(&contrasts).unwrap_or(0.0);
+    let contrasts: Vec<f64> = measured.graph.edges().map(|edge| measured.contrast(edge)).collect();
+    let e_contrast = mean(&contrasts).unwrap_or(0.0);
     let e_bound = bound(measured);
-    let mut layered: Vec<f64> = measured.graph.edges().filter_map(|edge| layered(measured, edge)).collect();
+    let layered: Vec<f64> = measured.graph.edges().filter_map(|edge| layered(measured, edge)).collect();
     let tangents = measured.graph.edges().filter_map(|edge| tangent(measured, edge)).collect::<Vec<f64>>();
     Contrast {
         e_contrast,
         e_bound,
         e_share: e_bound.map(|bound| e_contrast / bound),
+        p5_contrast: percentile(&contrasts, FIFTH),
         min_contrast: contrasts.iter().copied().min_by(f64::total_cmp),
         e_contrast_k: weighted(measured),
-        e_contrast_layers: statistics::mean(&layered),
-        p5_contrast_layers: statistics::percentile(&mut layered, FIFTH),
-        e_contrast_tangent: statistics::mean(&tangents),
-        // Last, for it reorders them.
-        p5_contrast: statistics::percentile(&mut contrasts, FIFTH),
+        e_contrast_layers: mean(&layered),
+        p5_contrast_layers: percentile(&layered, FIFTH),
+        e_contrast_tangent: mean(&tangents),
     }
 }
 
@@ -229,12 +229,14 @@ mod tests {
         }
 
         #[test]
-        fn percentiles_are_those_of_a_sorted_list(mut values in prop::collection::vec(0.0..1.0f64, 1..200), share in 0.0..1.0f64) {
-            let found = statistics::percentile(&mut values.clone(), share).unwrap();
-            values.sort_by(f64::total_cmp);
-            let place = share * (values.len() - 1) as f64;
-            let (low, high) = (values[place.floor() as usize], values[place.ceil() as usize]);
-            prop_assert!((found - (low + (high - low) * place.fract())).abs() < 1e-12);
+        fn a_twentieth_of_the_links_has_less_contrast(measured in patterns()) {
+            let mut all: Vec<f64> = measured.graph.edges().map(|edge| measured.contrast(edge)).collect();
+            all.sort_by(f64::total_cmp);
+            let place = 0.05 * (all.len() - 1) as f64;
+            let (low, high) = (all[place.floor() as usize], all[place.ceil() as usize]);
+            let found = measure(&measured);
+            prop_assert!((found.p5_contrast.unwrap() - (low + (high - low) * place.fract())).abs() < 1e-12);
+            prop_assert_eq!(found.min_contrast, Some(all[0]));
         }
 
         #[test]

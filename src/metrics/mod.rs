@@ -18,7 +18,6 @@ mod search;
 pub mod space;
 pub mod spectrum;
 pub mod ssim;
-mod statistics;
 mod strokes;
 mod trust;
 
@@ -105,6 +104,11 @@ impl Measures {
         scalars.extend(self.grain.scalars());
         scalars
     }
+}
+
+/// The mean, summed in order; none of no numbers.
+fn mean(values: &[f64]) -> Option<f64> {
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
 #[cfg(test)]

@@ -121,7 +121,10 @@ mod tests {
     fn colours_lie_on_white_paper() {
         assert_eq!(grey(Colour::BLACK), 0);
         assert_eq!(grey(Colour { a: 0, ..Colour::BLACK }), 255);
-        assert_eq!((0..=255).map(|v| grey(Colour { r: v, g: v, b: v, a: 255 })).collect::<Vec<u8>>(), (0..=255).collect::<Vec<u8>>());
+        assert_eq!(
+            (0..=255).map(|v| grey(Colour { r: v, g: v, b: v, a: 255 })).collect::<Vec<u8>>(),
+            (0..=255).collect::<Vec<u8>>()
+        );
         assert_eq!(grey(Colour { r: 0, g: 255, b: 0, a: 255 }), 182);
     }
 }
