@@ -216,7 +216,8 @@ impl<'a> Palette<'a> {
             for &neighbour in self.graph.neighbours(member as usize) {
                 let there = self.of[neighbour as usize];
                 if (there == colour || there == other) && self.seen[neighbour as usize] != self.walk {
-                    let is_round = there == other && self.graph.neighbours(neighbour as usize).binary_search(&site).is_ok();
+                    let is_round =
+                        there == other && self.graph.neighbours(neighbour as usize).binary_search(&site).is_ok();
                     if is_round || chain.len() >= LONGEST_CHAIN {
                         return None;
                     }

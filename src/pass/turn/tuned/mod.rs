@@ -90,7 +90,8 @@ fn classes(around: &[Vec<u32>]) -> Vec<Vec<u32>> {
         taken.extend(around.iter().filter(|&&other| other < patch).map(|&other| class_of[other as usize]));
         taken.sort_unstable();
         taken.dedup();
-        let free = taken.iter().enumerate().find(|(place, class)| place != *class).map_or(taken.len(), |(place, _)| place);
+        let free =
+            taken.iter().enumerate().find(|(place, class)| place != *class).map_or(taken.len(), |(place, _)| place);
         class_of.push(free);
         if free == classes.len() {
             classes.push(Vec::new());
@@ -131,9 +132,14 @@ impl Stir<'_> {
             for (place, site) in sites.clone().enumerate() {
                 near.clear();
                 let offsets = &self.links.offsets[self.links.near.range(site)];
-                near.extend(self.links.near.of(site).iter().zip(offsets).map(|(&other, &offsets)| {
-                    (candidates - usize::from(own.step(other, all)), links.of(offsets))
-                }));
+                near.extend(
+                    self.links
+                        .near
+                        .of(site)
+                        .iter()
+                        .zip(offsets)
+                        .map(|(&other, &offsets)| (candidates - usize::from(own.step(other, all)), links.of(offsets))),
+                );
                 let link_costs = |step: usize| near.iter().map(|(against, table)| table[step + against]).sum::<f32>();
                 let before = usize::from(own.steps[place]);
                 let mut step = before;
