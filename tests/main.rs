@@ -11,6 +11,7 @@ mod determinism;
 mod documents;
 mod examples;
 mod gallery;
+mod grain;
 mod ink;
 mod metrics;
 mod repeat;
