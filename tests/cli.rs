@@ -370,6 +370,21 @@ fn a_picture_keeps_what_it_shows_on_top() {
 }
 
 #[test]
+fn metrics_draw_charts() {
+    let desk = Desk::new();
+    let plain = desk.kake(&["metrics", "scene.kake", "--seeds", "0..2"]).out();
+    let ran = desk.kake(&["metrics", "scene.kake", "--seeds", "0..2", "--charts", "made/charts"]);
+    assert_eq!((ran.status(), ran.out()), (0, plain), "{}", ran.err());
+    for paint in ["lattice", "disc"] {
+        for kind in ["correlogram", "decay", "spectrum", "directions", "contrast", "cells"] {
+            let text = String::from_utf8(desk.get(&format!("made/charts/{paint}-{kind}.svg"))).expect("SVG is UTF-8");
+            assert!(text.starts_with("<svg") && text.contains(paint) && !text.contains("NaN"), "{paint} {kind}");
+        }
+    }
+    desk.kake(&["metrics", "scene.kake", "--charts", "scene.kake"]).refused(3, "cannot write scene.kake");
+}
+
+#[test]
 fn a_picture_without_a_scene_says_so() {
     let desk = Desk::new();
     desk.quietly(&["build", "scene.kake", "--embed", "none", "-o", "bare.svg", "-o", "bare.png", "-o", "bare.pdf"]);
