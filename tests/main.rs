@@ -12,6 +12,7 @@ mod documents;
 mod examples;
 mod experiment;
 mod gallery;
+mod grain;
 mod ink;
 mod metrics;
 mod paper;

@@ -97,14 +97,14 @@ impl Grid {
     /// side of it in whichever sense the edge is run along. Returns the rows that were looked at.
     fn toggle(&self, ring: impl Iterator<Item = Point> + Clone, mask: &mut Mask) -> std::ops::Range<usize> {
         let Some(last) = ring.clone().last() else { return 0..0 };
-        let mut touched = SIDE..0;
+        let (mut start, mut end) = (SIDE, 0);
         let mut a = last;
         for b in ring {
             let (upper, lower) = if a.y <= b.y { (a, b) } else { (b, a) };
             // The rows from whose centre on each end lies above.
             let rows = self.first(&self.ys, upper.y, self.bounds.min.y, self.bounds.height())
                 ..self.first(&self.ys, lower.y, self.bounds.min.y, self.bounds.height());
-            touched = touched.start.min(rows.start)..touched.end.max(rows.end);
+            (start, end) = (start.min(rows.start), end.max(rows.end));
             let edge = lower - upper;
             for row in rows {
                 let y = self.ys[row];
@@ -122,7 +122,7 @@ impl Grid {
             }
             a = b;
         }
-        touched.start.min(touched.end)..touched.end
+        start.min(end)..end
     }
 
     /// The first centre that is not below a value.
