@@ -83,8 +83,8 @@ mod tests {
         let at = |degrees: f64| direction(Angle::degrees(degrees));
         assert_eq!(at(0.0), at(180.0));
         let distance = |a: Colour, b: Colour| {
-            let d = |a: u8, b: u8| (f64::from(a) - f64::from(b)).powi(2);
-            d(a.r, b.r) + d(a.g, b.g) + d(a.b, b.b)
+            let d = |a: u8, b: u8| f64::from(a) - f64::from(b);
+            [d(a.r, b.r), d(a.g, b.g), d(a.b, b.b)].iter().map(|d| d * d).sum::<f64>()
         };
         for degrees in (0..180).step_by(5).map(f64::from) {
             assert!(distance(at(degrees), at(degrees + 90.0)) > 1.8 * distance(at(degrees), at(degrees + 20.0)));
