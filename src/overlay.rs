@@ -6,9 +6,6 @@
 //! pales.
 
 mod colours;
-#[cfg(test)]
-#[allow(clippy::unwrap_used)]
-mod tests;
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -275,3 +272,7 @@ fn areas(ring: &[Point], region: &Region) -> Vec<Area> {
     let shared = cell.intersection(region);
     shared.polygons().iter().map(|polygon| polygon.rings().cloned().collect()).collect()
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;
