@@ -16,11 +16,11 @@ use super::search::{AtDistance, Field, Sums};
 use super::{Measured, Scalars};
 use crate::random::Key;
 
-/// Links that searches from all tiles may look along. A search of [`REACH`] links on a triangulation looks along 4,400, so
-/// that about a million tiles are searched from one and all.
+/// Links that searches from all tiles may look along. A search of [`REACH`] links on a triangulation looks along some 5,000, so
+/// that nearly a million tiles are searched from one and all.
 const LINKS: u64 = 1 << 32;
 
-/// Links that searches from a sample may look along: some 15,000 searches on a triangulation.
+/// Links that searches from a sample may look along: some 12,000 searches on a triangulation.
 const LINKS_OF_SAMPLE: u64 = 1 << 26;
 
 /// Searches that tell how far a search looks on the whole, and the least that a sample has.
@@ -72,7 +72,7 @@ fn within(measured: &Measured, all: u64, sample: u64) -> Correlogram {
         })
         .collect();
     let field = Field::new(&measured.sites, &measured.graph, &vectors);
-    let tiles = vectors.len();
+    let tiles = field.len();
     if field.links() * tiles as u64 <= all {
         return correlogram(&field.from_all(), tiles);
     }
