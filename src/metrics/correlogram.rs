@@ -74,17 +74,17 @@ fn within(measured: &Measured, all: u64, sample: u64) -> Correlogram {
     let field = Field::new(&measured.sites, &measured.graph, &vectors);
     let tiles = field.len();
     if field.links() * tiles as u64 <= all {
-        return correlogram(&field.from_all(), tiles);
+        return correlogram(&field.search_all(), tiles);
     }
     let key = Key { seed: measured.seed, name: &measured.name, purpose: "correlogram" };
     let mut sources = shuffled(tiles, key);
     let pilots = PILOTS.min(tiles);
-    let looked = field.from_each(&sources[..pilots]).looked.div_ceil(pilots as u64).max(1);
+    let looked = field.search_each(&sources[..pilots]).looked.div_ceil(pilots as u64).max(1);
     if looked * tiles as u64 <= all {
-        return correlogram(&field.from_all(), tiles);
+        return correlogram(&field.search_all(), tiles);
     }
     sources.truncate((sample / looked).max(PILOTS as u64) as usize);
-    correlogram(&field.from_each(&sources), tiles)
+    correlogram(&field.search_each(&sources), tiles)
 }
 
 /// All tiles in an order that the key draws (Fisher and Yates).
