@@ -24,15 +24,19 @@
 //! terminal, no clock and, but for a [`loader::Loader`], no file.
 
 pub mod back;
+pub mod chart;
 #[doc(hidden)]
 pub mod cli;
 pub mod diag;
 pub mod drawing;
+pub mod experiment;
 pub mod field;
 pub mod geom;
+pub mod illustrate;
 pub mod loader;
 pub mod lower;
 pub mod metrics;
+pub mod overlay;
 pub mod pass;
 pub mod random;
 pub mod region;
@@ -47,9 +51,10 @@ use diag::{Code, Diagnostic};
 use drawing::Drawing;
 use loader::Loader;
 use lower::{LowerConfig, Lowered};
+use overlay::{Overlay, Pattern};
 use pass::draw::{Assembly, Item, Stages, items};
 use pass::{cut, link, place, turn};
-use scene::{Canvas, Limits, Paint, Scene};
+use scene::{Canvas, Depth, Limits, Paint, Scene};
 use span::Span;
 use stage::{Angles, Graph, Sites, Tiles};
 
@@ -60,6 +65,9 @@ pub struct Config {
     pub lower: LowerConfig,
     /// The paint that is drawn alone, where not all are.
     pub only: Option<String>,
+    /// What is shown of the patterns on top of the picture. With any of them a raster has all levels, whatever the canvas
+    /// says.
+    pub overlays: Vec<Overlay>,
 }
 
 /// The steps of a compilation, for whoever watches it.
@@ -161,12 +169,18 @@ fn draw(
     }
     let mut assembly = Assembly::new(canvas, limits);
     let mut whole = true;
+    let mut patterns = Vec::new();
+    let mut last = None;
     for (setting, item) in &items {
         let drawn = match item {
             Item::Outline(outline) => assembly.outline(outline, setting).map(|()| None),
             Item::Ink(ink) => assembly.ink(ink, setting).map(|()| None),
             Item::Paint(paint) => PaintStages::new(paint, canvas, limits, observer, diagnostics).and_then(|stages| {
                 observer.begin(Step::Draw, &paint.name);
+                if !config.overlays.is_empty() {
+                    patterns.push(Pattern::new(paint, canvas, &stages.borrow()));
+                    last = Some(paint.span);
+                }
                 assembly.paint(paint, setting, &stages.borrow())
             }),
         };
@@ -178,7 +192,19 @@ fn draw(
             }
         }
     }
-    whole.then(|| assembly.finish())
+    if let Some(span) = last
+        && let Err(diagnostic) = assembly.on_top(overlay::layers(&config.overlays, &patterns, canvas), span)
+    {
+        diagnostics.push(diagnostic);
+        whole = false;
+    }
+    whole.then(|| {
+        let mut drawing = assembly.finish();
+        if !config.overlays.is_empty() {
+            drawing.page.depth = Depth::Eight;
+        }
+        drawing
+    })
 }
 
 /// Every paint of a scene, from the bottom up.
@@ -230,6 +256,7 @@ impl PaintStages {
         let graph = link::link(&sites, paint.tone.link);
         observer.begin(Step::Turn, &paint.name);
         let angles = turn::turn(paint, &sites, &graph);
+        warnings.extend(turn::alike(paint, &graph, &angles));
         observer.begin(Step::Cut, &paint.name);
         let tiles = cut::cut(paint, canvas, &sites, &graph, &angles, warnings);
         Ok(Self { sites, graph, angles, tiles })

@@ -7,12 +7,11 @@ use std::path::{Path, PathBuf};
 use crate::support::here;
 
 /// What each part may know of.
-const ARROWS: [(&str, &[&str]); 18] = [
+const ARROWS: [(&str, &[&str]); 22] = [
     ("span", &[]),
     ("geom", &[]),
     ("random", &[]),
     ("loader", &[]),
-    ("stats", &[]),
     ("diag", &["span"]),
     ("syntax", &["span", "diag"]),
     ("region", &["geom"]),
@@ -22,17 +21,41 @@ const ARROWS: [(&str, &[&str]); 18] = [
     ("drawing", &["geom", "scene"]),
     ("pass", &["scene", "stage", "geom", "region", "field", "random", "diag", "span", "drawing"]),
     ("metrics", &["pass", "stage", "scene", "region", "geom", "random", "stats"]),
+    ("overlay", &["drawing", "geom", "metrics", "pass", "region", "scene"]),
+    ("stats", &[]),
+    ("chart", &["geom"]),
+    ("illustrate", &["chart", "metrics"]),
     ("back", &["drawing", "geom", "scene"]),
     ("lower", &["syntax", "scene", "region", "field", "loader", "diag", "span", "geom", "random"]),
     (
         "wedge",
         &["back", "diag", "drawing", "field", "geom", "loader", "lower", "pass", "region", "scene", "span", "syntax"],
     ),
+    ("experiment", &["back", "chart", "diag", "loader", "lower", "metrics", "scene", "span", "stats"]),
     (
         "cli",
         &[
-            "back", "diag", "drawing", "field", "geom", "loader", "lower", "metrics", "pass", "random", "region",
-            "scene", "span", "stage", "stats", "syntax", "wedge",
+            "back",
+            "chart",
+            "diag",
+            "drawing",
+            "experiment",
+            "field",
+            "geom",
+            "illustrate",
+            "loader",
+            "lower",
+            "metrics",
+            "overlay",
+            "pass",
+            "random",
+            "region",
+            "scene",
+            "span",
+            "stage",
+            "stats",
+            "syntax",
+            "wedge",
         ],
     ),
 ];
@@ -122,10 +145,10 @@ fn every_part_knows_only_what_it_may() {
                 let fits = if is_part {
                     name == **part || allowed.contains(&name.as_str())
                 } else {
-                    matches!(*part, "cli" | "wedge")
+                    matches!(*part, "cli" | "experiment" | "wedge")
                 };
-                let pipeline =
-                    matches!(*part, "cli" | "wedge") && matches!(name.as_str(), "compile" | "paints" | "no_such_paint");
+                let pipeline = matches!(*part, "cli" | "experiment" | "wedge")
+                    && matches!(name.as_str(), "compile" | "paints" | "no_such_paint");
                 if !fits && !pipeline {
                     wrong.push(format!("{} names crate::{name}", path.display()));
                 }

@@ -11,7 +11,7 @@ const SCENE: &str = "edition 1
 
 canvas { size: (8mm, 8mm), pixels: (64, 64), paper: white }
 
-tone lined { place: grid(columns: 2, rows: 2) shape: rect(size: 3mm) angle: checkerboard() fill: lines(pitch: 1mm, pen: 0.2mm) k: 1 }
+tone lined { place: grid(columns: 2, rows: 2) shape: rect(size: 2.9mm) angle: checkerboard() fill: lines(pitch: 1mm, pen: 0.2mm) k: 1 }
 tone strewn { place: poisson(radius: 1mm) shape: voronoi(inset: 0.1mm) angle: bfs() fill: lines(pitch: 0.5mm, pen: 0.1mm)
   k: linear(from: (0, 0), to: (8, 0), start: 0, end: 3) blend: dither }
 

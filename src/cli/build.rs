@@ -4,17 +4,19 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 
 use crate::back::metadata::Metadata;
 use crate::back::plot::plot;
 use crate::back::{json, pdf, png, svg};
 use crate::diag::{Code, Diagnostic};
 use crate::drawing::Drawing;
+use crate::overlay::Overlay;
 use crate::scene::Limits;
 use crate::{Compiled, Config, compile};
 
 use super::files::{Opened, Pending, open, plain, print, write_beside};
-use super::picture::{Embed, Form, is_plot, metadata, set_plot, take_over};
+use super::picture::{Embed, Form, NO_OVERLAY, is_plot, metadata, overlays, set_plot, take_over};
 use super::progress::Progress;
 use super::{Ended, SceneArgs, report};
 
@@ -45,6 +47,10 @@ pub(super) struct BuildArgs {
     /// between them; says how far the pen goes. Outputs are .svg
     #[arg(long)]
     plot: bool,
+    /// Show patterns on top of the picture: any of sites, graph, cells, angles, k and contrast, with commas between them.
+    /// none takes away what a picture was made with
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = overlay_names(), conflicts_with = "plot")]
+    overlay: Vec<String>,
     /// What the pictures carry so that they can be built again
     #[arg(long, value_enum, default_value_t = Embed::Text)]
     embed: Embed,
@@ -72,6 +78,11 @@ pub(super) fn parse_dpi(text: &str) -> Result<f64, String> {
         Ok(dpi) if (1.0..=100_000.0).contains(&dpi) => Ok(dpi),
         _ => Err("a resolution is a number from 1 to 100,000".to_owned()),
     }
+}
+
+/// Every overlay by its name, and none.
+fn overlay_names() -> PossibleValuesParser {
+    PossibleValuesParser::new(Overlay::ALL.map(Overlay::name).into_iter().chain([NO_OVERLAY]))
 }
 
 /// The kinds of output.
@@ -175,6 +186,9 @@ fn build(arguments: &BuildArgs, opened: &Opened, outputs: &[(PathBuf, Kind)], se
     config.lower.dpi = arguments.dpi;
     config.only.clone_from(&arguments.only);
     take_over(&mut config, opened);
+    if !arguments.plot {
+        config.overlays = overlays(&arguments.overlay, opened);
+    }
     let form = arguments.form.or_else(|| Form::of(opened)).unwrap_or(Form::Page);
     let mut compiled = compile(&opened.path, &opened.loader, &config, &mut progress);
     if outputs.iter().any(|(_, kind)| *kind == Kind::Png) {
@@ -195,7 +209,8 @@ fn build(arguments: &BuildArgs, opened: &Opened, outputs: &[(PathBuf, Kind)], se
         eprintln!("kake: a pattern needs a canvas that repeats: `canvas {{ … repeat: true }}`");
         return Ended::Fault;
     }
-    let is_plotted = arguments.plot || opened.picture.as_ref().is_some_and(is_plot);
+    // What is shown on top of a picture is no part of its plot.
+    let is_plotted = arguments.plot || config.overlays.is_empty() && opened.picture.as_ref().is_some_and(is_plot);
     let mut metadata = metadata(arguments.embed, &config, (opened, form), &compiled);
     let plot = (is_plotted && outputs.iter().any(|(_, kind)| *kind == Kind::Svg)).then(|| {
         progress.step("plot", "");

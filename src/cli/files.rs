@@ -148,7 +148,7 @@ pub(super) struct Pending {
 
 enum Written {
     /// Beside its place, to be moved there.
-    Beside(tempfile::NamedTempFile),
+    Beside(tempfile::TempPath),
     /// Straight to a device or pipe, which cannot be replaced.
     Straight,
 }
@@ -178,7 +178,8 @@ pub(super) fn write_beside(target: &Path, write: impl FnOnce(&mut dyn Write) -> 
     write(&mut buffered)?;
     buffered.flush()?;
     drop(buffered);
-    Ok(Pending { target, file: Written::Beside(file) })
+    // The file is closed: many may be pending at a time.
+    Ok(Pending { target, file: Written::Beside(file.into_temp_path()) })
 }
 
 const BUFFER: usize = 1 << 20;
@@ -209,7 +210,7 @@ impl Pending {
     /// Moves the file to its place.
     pub(super) fn keep(self) -> io::Result<()> {
         match self.file {
-            Written::Beside(file) => file.persist(&self.target).map(|_| ()).map_err(|error| error.error),
+            Written::Beside(file) => file.persist(&self.target).map_err(|error| error.error),
             Written::Straight => Ok(()),
         }
     }

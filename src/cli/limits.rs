@@ -10,14 +10,16 @@ pub(super) enum Limit {
     Iterations,
     Megapixels,
     Nesting,
+    Runs,
 }
 
-const NAMES: [(&str, Limit); 5] = [
+const NAMES: [(&str, Limit); 6] = [
     ("tiles", Limit::Tiles),
     ("strokes", Limit::Strokes),
     ("iterations", Limit::Iterations),
     ("megapixels", Limit::Megapixels),
     ("nesting", Limit::Nesting),
+    ("runs", Limit::Runs),
 ];
 
 /// Calls may be nested this deep at most: the stack has no room for more.
@@ -51,6 +53,7 @@ pub(super) fn apply(lifted: &[(Limit, u64)]) -> Limits {
             Limit::Iterations => limits.iterations = value,
             Limit::Megapixels => limits.megapixels = value,
             Limit::Nesting => limits.nesting = value,
+            Limit::Runs => limits.runs = value,
         }
     }
     limits

@@ -8,6 +8,7 @@
 mod build;
 mod check;
 mod convert;
+mod experiment;
 mod explain;
 mod files;
 mod fmt;
@@ -80,6 +81,8 @@ enum Command {
     Metrics(metrics::MetricsArgs),
     /// Draw the calibration wedge of a tone, and print what its steps measure
     Wedge(wedge::WedgeArgs),
+    /// Run a scene's experiment: every condition with every seed, measured, analysed and pictured
+    Experiment(Box<experiment::ExperimentArgs>),
     /// Explain a diagnostic's code, or list them all
     Explain(explain::ExplainArgs),
     /// Print a completion script for a shell
@@ -103,7 +106,7 @@ struct SceneArgs {
     /// The folder whose files the scene may read
     #[arg(long, value_name = "DIR")]
     root: Option<PathBuf>,
-    /// Lift a limit: tiles, strokes, iterations, megapixels or nesting
+    /// Lift a limit: tiles, strokes, iterations, megapixels, nesting or runs
     #[arg(long, value_name = "NAME=N", value_parser = limits::parse_limit)]
     limit: Vec<(limits::Limit, u64)>,
 }
@@ -116,7 +119,7 @@ impl SceneArgs {
     /// The configuration that the arguments ask for.
     fn config(&self, seed: Option<u64>) -> Config {
         let lower = LowerConfig { sets: self.set.clone(), seed, dpi: None, limits: self.limits() };
-        Config { lower, only: None }
+        Config { lower, only: None, overlays: Vec::new() }
     }
 }
 
@@ -139,6 +142,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Params(arguments) => params::run(&arguments),
         Command::Metrics(arguments) => metrics::run(&arguments),
         Command::Wedge(arguments) => wedge::run(&arguments),
+        Command::Experiment(arguments) => experiment::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Completions(arguments) => {
             let mut script = Vec::new();

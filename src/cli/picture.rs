@@ -6,6 +6,7 @@ use clap::ValueEnum;
 
 use crate::back::metadata::Metadata;
 use crate::lower::Lowered;
+use crate::overlay::Overlay;
 use crate::{Compiled, Config};
 
 use super::files::Opened;
@@ -62,6 +63,22 @@ pub(super) fn take_over(config: &mut Config, opened: &Opened) {
     config.only = config.only.take().or_else(|| picture.options.get("only").cloned());
 }
 
+/// The option that says what a picture shows on top.
+const OVERLAY: &str = "overlay";
+
+/// What stands for no overlay.
+pub(super) const NO_OVERLAY: &str = "none";
+
+/// The overlays of these names; where none is named, those that a picture was made with.
+pub(super) fn overlays(names: &[String], opened: &Opened) -> Vec<Overlay> {
+    let said = opened.picture.as_ref().and_then(|picture| picture.options.get(OVERLAY));
+    let list = |names: &mut dyn Iterator<Item = &str>| names.filter_map(Overlay::from_name).collect();
+    match said {
+        Some(said) if names.is_empty() => list(&mut said.split(',')),
+        _ => list(&mut names.iter().map(String::as_str)),
+    }
+}
+
 /// The option that says that a picture is a plot.
 const PLOT: &str = "plot";
 
@@ -92,6 +109,10 @@ pub(super) fn metadata(
     }
     if let Some(only) = &config.only {
         options.insert("only".to_owned(), only.clone());
+    }
+    if !config.overlays.is_empty() {
+        let names: Vec<&str> = config.overlays.iter().map(|overlay| overlay.name()).collect();
+        options.insert(OVERLAY.to_owned(), names.join(","));
     }
     if form != Form::Page {
         options.insert(Form::OPTION.to_owned(), form.name().to_owned());

@@ -63,3 +63,32 @@ impl Observer for Progress {
         self.step(step.name(), paint);
     }
 }
+
+/// Counts how many of several things are done, with the time that is left.
+pub(super) struct Bar(ProgressBar);
+
+impl Bar {
+    /// Of so many, of which some are done already.
+    pub(super) fn new(what: &'static str, all: usize, done: usize) -> Self {
+        // indicatif draws on terminals only.
+        let bar = ProgressBar::new(all as u64);
+        if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}, {eta} left") {
+            bar.set_style(style);
+        }
+        bar.set_message(what);
+        bar.set_position(done as u64);
+        // What was done before says nothing about how fast the rest goes.
+        bar.reset_eta();
+        Self(bar)
+    }
+
+    /// One more is done.
+    pub(super) fn advance(&self) {
+        self.0.inc(1);
+    }
+
+    /// Takes the bar away.
+    pub(super) fn finish(self) {
+        self.0.finish_and_clear();
+    }
+}

@@ -6,6 +6,7 @@ use crate::diag::{Code, Diagnostic, did_you_mean};
 use crate::scene::{Experiment, Factor, ParamValue};
 use crate::span::Span;
 use crate::syntax::ast::{Expr, ExprKind, Ident, Property, StatementKind};
+use crate::syntax::format;
 
 use super::convert::Slot;
 use super::cx::Cx;
@@ -67,8 +68,12 @@ fn one<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &Ident, properties:
             "reference" => {
                 if let Value::List(members) = eval::expect(cx, scope, &property.value, Slot::of(Kind::List)) {
                     let spans = eval::member_spans(&property.value, members.len());
-                    for (member, span) in members.iter().zip(spans) {
-                        experiment.reference.push(reference(cx, member, span));
+                    for (i, (member, span)) in members.iter().zip(spans).enumerate() {
+                        let record = match &property.value.kind {
+                            ExprKind::List(written) if written.len() == members.len() => Some(&written[i]),
+                            _ => None,
+                        };
+                        experiment.reference.push(reference(cx, member, span, record));
                     }
                 }
             }
@@ -131,6 +136,7 @@ fn factors<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, property: &'a Propert
         if !known_param(cx, member) {
             continue;
         }
+        let expr = written(&property.value, &member.name);
         let levels: Vec<Value> = match &member.value {
             Value::List(levels) => levels.to_vec(),
             Value::Unknown(_) => continue,
@@ -141,27 +147,46 @@ fn factors<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, property: &'a Propert
             cx.report(Diagnostic::error(Code::Range, member.span, message).label("an empty list"));
             continue;
         }
-        let spans = match written(property, &member.name) {
+        let spans = match expr {
             Some(expr) => eval::member_spans(expr, levels.len()),
             None => vec![member.span; levels.len()],
         };
-        let levels: Vec<ParamValue> = levels
-            .into_iter()
-            .zip(spans)
-            .filter_map(|(level, span)| params::level(cx, &member.name, level, span))
-            .collect();
+        let mut known: Vec<(ParamValue, Span)> = Vec::with_capacity(levels.len());
+        for (i, (level, span)) in levels.into_iter().zip(spans).enumerate() {
+            let text = expr.map(|expr| spelled(expr, &member.value, i));
+            let Some(level) = params::level(cx, &member.name, level, (span, text)) else { continue };
+            match known.iter().find(|(earlier, _)| *earlier == level) {
+                Some(&(_, earlier)) => {
+                    let message = format!("`{}` has the level {} twice", member.name, level.text);
+                    cx.report(Diagnostic::error(Code::Duplicate, span, message).note(earlier, "first given here"));
+                }
+                None => known.push((level, span)),
+            }
+        }
+        let levels = known.into_iter().map(|(level, _)| level).collect();
         factors.push(Factor { param: member.name.clone(), levels });
     }
     factors
 }
 
+/// The expression of one of several levels, which are written as a list or as something that gives one.
+fn spelled(expr: &Expr, value: &Value, level: usize) -> String {
+    match (&expr.kind, value) {
+        (ExprKind::List(written), Value::List(levels)) if written.len() == levels.len() => {
+            format::expression(&written[level])
+        }
+        (_, Value::List(_)) => format!("({})[{level}]", format::expression(expr)),
+        _ => format::expression(expr),
+    }
+}
+
 /// How a member of a record is written, where the record is.
-fn written<'e>(property: &'e Property, name: &str) -> Option<&'e Expr> {
-    let ExprKind::Record(members) = &property.value.kind else { return None };
+fn written<'e>(record: &'e Expr, name: &str) -> Option<&'e Expr> {
+    let ExprKind::Record(members) = &record.kind else { return None };
     members.iter().find(|member| member.name.name == name).map(|member| &member.value)
 }
 
-fn reference(cx: &mut Cx<'_, '_>, value: &Value, span: Span) -> Vec<(String, ParamValue)> {
+fn reference(cx: &mut Cx<'_, '_>, value: &Value, span: Span, record: Option<&Expr>) -> Vec<(String, ParamValue)> {
     let Value::Record(members) = value else {
         if !value.is_unknown() {
             let message = format!("a reference gives parameters their values, not {}", value.describe());
@@ -172,8 +197,9 @@ fn reference(cx: &mut Cx<'_, '_>, value: &Value, span: Span) -> Vec<(String, Par
     };
     let mut condition = Vec::new();
     for member in members.iter() {
+        let text = record.and_then(|record| written(record, &member.name)).map(format::expression);
         if known_param(cx, member)
-            && let Some(value) = params::level(cx, &member.name, member.value.clone(), member.span)
+            && let Some(value) = params::level(cx, &member.name, member.value.clone(), (member.span, text))
         {
             condition.push((member.name.clone(), value));
         }

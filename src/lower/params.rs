@@ -127,13 +127,17 @@ pub(super) struct Settled {
 
 fn default_text(value: &Value, expr: &Expr) -> ParamValue {
     match value {
-        Value::Unknown(_) => ParamValue { text: crate::syntax::format::expression(expr), number: None },
+        Value::Unknown(_) => ParamValue { text: crate::syntax::format::expression(expr), number: None, string: None },
         value => param_value(value),
     }
 }
 
 pub(super) fn param_value(value: &Value) -> ParamValue {
-    ParamValue { text: value.text(), number: value.number() }
+    let string = match value {
+        Value::String(text) => Some(text.value.to_string()),
+        _ => None,
+    };
+    ParamValue { text: value.text(), number: value.number(), string }
 }
 
 fn set_value<'a>(cx: &mut Cx<'a, '_>, set: &'a Set, kind: Option<Kind>) -> Value {
@@ -227,12 +231,32 @@ pub(super) fn within(cx: &mut Cx<'_, '_>, value: Value, domain: Option<(&Value, 
 }
 
 /// A level of a factor: a value that a parameter may be given. `None` where it may not, which was reported.
-pub(super) fn level<'a>(cx: &mut Cx<'a, '_>, name: &str, value: Value, span: Span) -> Option<ParamValue> {
+///
+/// A run sets the parameter by an expression. Where the value itself is none that can be written down, a placement say, it
+/// is `written`: the expression that the scene has for it.
+pub(super) fn level<'a>(
+    cx: &mut Cx<'a, '_>,
+    name: &str,
+    value: Value,
+    (span, written): (Span, Option<String>),
+) -> Option<ParamValue> {
     let (module, _, short) = settable(cx).into_iter().find(|(_, full, _)| full == name)?;
     let settled = cx.settled.get(&(module, short)).cloned()?;
     let value = coerce(cx, value, settled.kind.map_or(Slot::ANY, Slot::of), span);
     let value = within(cx, value, settled.domain.as_ref().map(|(domain, place)| (domain, *place)), span);
-    (!value.is_unknown()).then(|| param_value(&value))
+    if value.is_unknown() {
+        return None;
+    }
+    let plain = param_value(&value);
+    match written {
+        _ if value.is_literal() => Some(plain),
+        Some(text) => Some(ParamValue { text, ..plain }),
+        None => {
+            let message = format!("{} as a level is written out in the experiment", value.describe());
+            cx.report(Diagnostic::error(Code::Type, span, message).hint(format!("`{{ {name}: [a, b] }}`")));
+            None
+        }
+    }
 }
 
 /// The names of the parameters that can be set.

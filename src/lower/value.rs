@@ -288,6 +288,18 @@ impl Value {
         }
     }
 
+    /// Whether its text is an expression that gives it.
+    pub(super) fn is_literal(&self) -> bool {
+        match self {
+            Self::Number(_) | Self::Length(_) | Self::Angle(_) | Self::Percent(_) | Self::Colour(_) => true,
+            Self::String(_) | Self::Bool(_) | Self::Range(_) | Self::Word(_) => true,
+            Self::Tuple(members) | Self::List(members) => members.iter().all(Self::is_literal),
+            Self::Record(members) => members.iter().all(|member| member.value.is_literal()),
+            Self::Region(_) | Self::Field(_) | Self::Placement(_) | Self::Shape(_) | Self::Angles(_) => false,
+            Self::Fill(_) | Self::Hand(_) | Self::Tone(_) | Self::Drawing(_) | Self::Unknown(_) => false,
+        }
+    }
+
     /// As an expression of the language, or in words where no expression gives it.
     pub(super) fn text(&self) -> String {
         match self {
@@ -322,6 +334,7 @@ fn quoted(text: &str) -> String {
             '\\' => out.push_str("\\\\"),
             '\n' => out.push_str("\\n"),
             '\t' => out.push_str("\\t"),
+            control if control.is_control() => out.push_str(&format!("\\u{{{:x}}}", u32::from(control))),
             '{' => out.push_str("\\{"),
             '}' => out.push_str("\\}"),
             other => out.push(other),

@@ -12,9 +12,13 @@ mod waves;
 use serde::Serialize;
 
 use super::{Measured, Scalars};
+use crate::stats::{percentile, summary};
 
 /// Tiles below which a pattern is too small to have grain.
 const FEWEST: usize = 10;
+
+/// The share of the links that may part by less.
+const FIFTH: f64 = 0.05;
 
 /// Three tiles that touch can part by at most two thirds each; neighbours that part by half of that, 30 degrees, are
 /// told from each other at a glance.
@@ -70,7 +74,8 @@ pub fn measure(measured: &Measured) -> Grain {
     if measured.sites.len() < FEWEST {
         return Grain::default();
     }
-    let contrast = fifth_percentile(measured).map(|p5| (p5 / PARTED).min(1.0));
+    let contrasts: Vec<f64> = measured.graph.edges().map(|edge| measured.contrast(edge)).collect();
+    let contrast = percentile(&contrasts, FIFTH).map(|p5| (p5 / PARTED).min(1.0));
     let directions = directions::effective(measured).map(|number| (number / MANY).min(1.0));
     let lie = lie::Lie::new(measured);
     let evenness = lie.as_ref().map(|lie| (1.0 - lie.triangles / SCATTERED).max(0.0));
@@ -89,21 +94,10 @@ pub fn measure(measured: &Measured) -> Grain {
     }
 }
 
-/// The 5th percentile of the links' contrasts, linear between order statistics.
-fn fifth_percentile(measured: &Measured) -> Option<f64> {
-    let mut contrasts: Vec<f64> = measured.graph.edges().map(|edge| measured.contrast(edge)).collect();
-    let place = 0.05 * contrasts.len().checked_sub(1)? as f64;
-    let (_, &mut low, above) = contrasts.select_nth_unstable_by(place as usize, f64::total_cmp);
-    let high = above.iter().copied().min_by(f64::total_cmp).unwrap_or(low);
-    Some(low + (high - low) * place.fract())
-}
-
 /// Standard deviation (n - 1) over mean; none of fewer than two numbers or where the mean is not above zero.
 fn variation(values: &[f64]) -> Option<f64> {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
-    (n > 1.0 && mean > 0.0).then(|| (squares / (n - 1.0)).sqrt() / mean)
+    let summary = summary(values).filter(|summary| summary.mean > 0.0)?;
+    Some(summary.sd? / summary.mean)
 }
 
 #[cfg(test)]

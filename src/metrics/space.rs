@@ -97,14 +97,14 @@ impl Grid {
     /// side of it in whichever sense the edge is run along. Returns the rows that were looked at.
     fn toggle(&self, ring: impl Iterator<Item = Point> + Clone, mask: &mut Mask) -> std::ops::Range<usize> {
         let Some(last) = ring.clone().last() else { return 0..0 };
-        let mut touched = SIDE..0;
+        let (mut start, mut end) = (SIDE, 0);
         let mut a = last;
         for b in ring {
             let (upper, lower) = if a.y <= b.y { (a, b) } else { (b, a) };
             // The rows from whose centre on each end lies above.
             let rows = self.first(&self.ys, upper.y, self.bounds.min.y, self.bounds.height())
                 ..self.first(&self.ys, lower.y, self.bounds.min.y, self.bounds.height());
-            touched = touched.start.min(rows.start)..touched.end.max(rows.end);
+            (start, end) = (start.min(rows.start), end.max(rows.end));
             let edge = lower - upper;
             for row in rows {
                 let y = self.ys[row];
@@ -122,7 +122,7 @@ impl Grid {
             }
             a = b;
         }
-        touched.start.min(touched.end)..touched.end
+        start.min(end)..end
     }
 
     /// The first centre that is not below a value.
@@ -179,26 +179,49 @@ impl Mask {
 
 /// The sample standard deviation over the mean of the areas of the sites' cells.
 fn unevenness(measured: &Measured) -> Option<f64> {
-    let areas = cell_areas(&measured.sites, &measured.region, measured.period);
-    let areas = summary(&areas)?;
+    let areas = summary(&areas(measured))?;
     Some(areas.sd? / areas.mean).filter(|unevenness| unevenness.is_finite())
 }
 
-/// The area, in square millimetres, of every site's Voronoi cell clipped to a region. Links need not be Delaunay's, and
-/// sites beyond the region take part in no cell, so the sites are triangulated anew. Of several sites in one place the
-/// first has the cell.
-pub(super) fn cell_areas(points: &[Point], region: &Region, period: Option<Period>) -> Vec<f64> {
-    let region_bounds = region.bounds();
-    let bounds = points.iter().fold(region_bounds, |bounds, &p| bounds.including(p));
-    if points.is_empty() || region.is_empty() {
-        return vec![0.0; points.len()];
-    }
+/// The area of every tile's Voronoi cell within the region, in square millimetres.
+pub(crate) fn areas(measured: &Measured) -> Vec<f64> {
+    cell_areas(&measured.sites, &measured.region, measured.period)
+}
+
+/// The outline of every tile's Voronoi cell, whole also where it leaves the region; empty where another site lies at the
+/// same place before it.
+pub(crate) fn outlines(measured: &Measured) -> Vec<Vec<Point>> {
+    let (sites, graph) = triangulated(&measured.sites, &measured.region, measured.period);
+    let cells = Cells::new(&sites, &graph, Length::ZERO, Length::ZERO);
+    let outline = |site: usize| {
+        let mut ring = Vec::new();
+        cells.outline(site, &mut ring, &mut Vec::new());
+        ring
+    };
+    (0..sites.points.len()).into_par_iter().map(outline).collect()
+}
+
+/// Sites with the links of their triangulation. Links need not be Delaunay's, and sites beyond the region take part in no
+/// cell, so that they are triangulated anew.
+fn triangulated(points: &[Point], region: &Region, period: Option<Period>) -> (Sites, Graph) {
+    let bounds = points.iter().fold(region.bounds(), |bounds, &p| bounds.including(p));
     // What the triangulation of a torus begins its search with.
-    let spacing = (region.area() / points.len() as f64).sqrt();
+    let spacing = (region.area() / points.len().max(1) as f64).sqrt();
     let torus = period.map(|period| Torus { period, images: Vec::new() });
     let sites =
         Sites { points: points.to_vec(), domain: bounds, extent: bounds, spacing, cells: None, tiling: None, torus };
     let graph = link(&sites, Link::Delaunay);
+    (sites, graph)
+}
+
+/// The area, in square millimetres, of every site's Voronoi cell clipped to a region. Of several
+/// sites in one place the first has the cell.
+pub(super) fn cell_areas(points: &[Point], region: &Region, period: Option<Period>) -> Vec<f64> {
+    let region_bounds = region.bounds();
+    if points.is_empty() || region.is_empty() {
+        return vec![0.0; points.len()];
+    }
+    let (sites, graph) = triangulated(points, region, period);
     let cells = Cells::new(&sites, &graph, Length::ZERO, Length::ZERO);
     let mut pieces: Vec<Piece> = (0..points.len())
         .into_par_iter()

@@ -20,14 +20,14 @@ pub(crate) struct Page {
     pub(crate) region: &'static str,
     /// How far tiles go on beyond it, in tiles.
     pub(crate) bleed: f64,
-    /// Whether it repeats: `off` or `both`.
-    pub(crate) repeat: &'static str,
+    /// Whether it repeats.
+    pub(crate) repeat: bool,
 }
 
 impl Page {
     /// The report's page: a square without bleed.
     pub(crate) const fn square(tiles: u32) -> Self {
-        Self { size: [60.0, 60.0], tiles, region: "canvas", bleed: 0.0, repeat: "off" }
+        Self { size: [60.0, 60.0], tiles, region: "canvas", bleed: 0.0, repeat: false }
     }
 
     /// The distance of sites in millimetres: the square root of a tile's share of the page.
@@ -74,10 +74,8 @@ pub(crate) enum Sites {
 pub(crate) enum Turn {
     /// A rule of the language.
     Rule(&'static str),
-    /// Four directions 45 degrees apart, no neighbours alike.
-    FourColours,
-    /// Four directions that turn once round over the page.
-    TurningColours,
+    /// A rule of the language, all turned on by half a turn in even steps from left to right.
+    Turning(&'static str),
     /// Two directions, most neighbours unlike.
     TwoColours,
     /// Stripes of two tiles' width, each of one direction.
@@ -109,6 +107,7 @@ pub(crate) struct Pattern {
 const DISK: Sites = Sites::Place("poisson(radius: {r}mm)");
 const BFS: Turn = Turn::Rule("bfs(candidates: 360)");
 const RANDOM: Turn = Turn::Rule("random()");
+const TUNED: Turn = Turn::Rule("tuned()");
 
 const fn lattice(steps: [[f64; 2]; 2], jitter: f64) -> Sites {
     Sites::Lattice { steps, jitter, is_turned: false }
@@ -132,18 +131,27 @@ const OBLIQUE: [[f64; 2]; 2] = [[1.0, 0.0], [0.3, 1.0]];
 /// Poisson-disk sites with breadth-first angles: what comes first.
 pub(crate) const PROPOSED: Pattern = pattern("poisson + bfs", DISK, BFS);
 
-/// What must not come after it: the same with sites that lie more evenly, without rows.
-pub(crate) const BETTER: [Pattern; 6] = [
+/// What must not come after it: sites that lie more evenly, without rows, and angles that part more.
+pub(crate) const BETTER: [Pattern; 9] = [
     pattern("relaxed 1 + bfs", Sites::Place("relaxed(poisson(radius: {r}mm), rounds: 1)"), BFS),
     pattern("relaxed 3 + bfs", Sites::Place("relaxed(poisson(radius: {r}mm), rounds: 3)"), BFS),
     pattern("relaxed 5 + bfs", Sites::Place("relaxed(poisson(radius: {r}mm), rounds: 5)"), BFS),
     pattern("relaxed 10 + bfs", Sites::Place("relaxed(poisson(radius: {r}mm), rounds: 10)"), BFS),
     pattern("relaxed 30 + bfs", Sites::Place("relaxed(poisson(radius: {r}mm), rounds: 30)"), BFS),
     pattern("relaxed 100 + bfs", Sites::Place("relaxed(poisson(radius: {r}mm), rounds: 100)"), BFS),
+    pattern("poisson + tuned", DISK, TUNED),
+    pattern("poisson + tuned, grain 6", DISK, Turn::Rule("tuned(grain: 6)")),
+    pattern("relaxed 5 + tuned", Sites::Place("relaxed(poisson(radius: {r}mm), rounds: 5)"), TUNED),
+];
+
+/// What it does not tell from it, though a machine made it.
+pub(crate) const UNTOLD: [Pattern; 2] = [
+    pattern("poisson + turning colours", DISK, Turn::Turning("coloured(4)")),
+    pattern("poisson + bfs of 24", DISK, Turn::Rule("bfs(candidates: 24)")),
 ];
 
 /// What must come after it.
-pub(crate) const WORSE: [Pattern; 44] = [
+pub(crate) const WORSE: [Pattern; 47] = [
     pattern("poisson + random", DISK, RANDOM),
     pattern("uniform + bfs", Sites::Place("uniform(count: poisson(radius: {r}mm))"), BFS),
     pattern("uniform + random", Sites::Place("uniform(count: poisson(radius: {r}mm))"), RANDOM),
@@ -172,14 +180,17 @@ pub(crate) const WORSE: [Pattern; 44] = [
     pattern("r2 + bfs", Sites::R2, BFS),
     pattern("clumps + bfs", Sites::Clumps, BFS),
     pattern("copies of a patch + bfs", Sites::Copies(4), BFS),
-    pattern("poisson + four colours", DISK, Turn::FourColours),
-    pattern("poisson + turning colours", DISK, Turn::TurningColours),
+    pattern("poisson + four colours", DISK, Turn::Rule("coloured(4)")),
+    pattern("grid + tuned", Sites::Place("grid(spacing: {a}mm)"), TUNED),
+    pattern("hex + tuned", Sites::Place("hex(spacing: {h}mm)"), TUNED),
+    pattern("uniform + tuned", Sites::Place("uniform(count: poisson(radius: {r}mm))"), TUNED),
     pattern("poisson + two colours", DISK, Turn::TwoColours),
     pattern("poisson + bfs of 2", DISK, Turn::Rule("bfs(candidates: 2)")),
     pattern("poisson + bfs of 3", DISK, Turn::Rule("bfs(candidates: 3)")),
     pattern("poisson + bfs of 4", DISK, Turn::Rule("bfs(candidates: 4)")),
     pattern("poisson + bfs of 6", DISK, Turn::Rule("bfs(candidates: 6)")),
     pattern("poisson + bfs of 8", DISK, Turn::Rule("bfs(candidates: 8)")),
+    pattern("poisson + bfs of 12", DISK, Turn::Rule("bfs(candidates: 12)")),
     pattern("poisson + stripes", DISK, Turn::Stripes),
     pattern("poisson + rings", DISK, Turn::Rings),
     pattern("poisson + ramp", DISK, Turn::Ramp),
@@ -197,7 +208,7 @@ impl Pattern {
         let place = match self.sites {
             Sites::Place(text) => text,
             Sites::Lattice { .. } | Sites::Sunflower | Sites::Halton | Sites::R2 | Sites::Clumps | Sites::Copies(_) => {
-                "uniform(count: 1)"
+                "uniform(count: 100)"
             }
         };
         let place = place
@@ -207,7 +218,7 @@ impl Pattern {
             // A triangle's area is a share of its side's square, as a rhomb's mean is.
             .replace("{t}", &(a / 0.658_037).to_string())
             .replace("{p}", &(a / 0.9).to_string());
-        let rule = if let Turn::Rule(text) = self.turn { text } else { "bfs()" };
+        let rule = if let Turn::Rule(text) | Turn::Turning(text) = self.turn { text } else { "bfs()" };
         let ([width, height], region, repeat) = (page.size, page.region, page.repeat);
         let text = format!(
             "canvas {{ size: ({width}mm, {height}mm), repeat: {repeat} }}
@@ -337,22 +348,17 @@ impl Turn {
         let by_place = |turn: &dyn Fn(f64, f64) -> f64| -> Vec<Angle> {
             sites.iter().map(|p| Angle::degrees(turn(p.x / a, p.y / a)).direction()).collect()
         };
-        let quarters = |colours: Vec<u8>, step: f64| -> Vec<Angle> {
-            colours.into_iter().map(|colour| Angle::degrees(f64::from(colour) * step)).collect()
-        };
         let widest = sites.iter().fold(0.0f64, |x, p| x.max(p.x / a));
         let middle = sites.iter().fold([0.0; 2], |[x, y], p| [x + p.x / a, y + p.y / a]);
         let middle = middle.map(|sum| sum / sites.len() as f64);
         let mut random = stream(seed, "angles");
         match self {
             Self::Rule(_) => measured.angles.clone(),
-            Self::FourColours => quarters(four_colours(measured), 45.0),
-            Self::TurningColours => {
-                let colours = quarters(four_colours(measured), 45.0);
+            Self::Turning(_) => {
                 let round = by_place(&|x, _| x / widest * 180.0);
-                colours.into_iter().zip(round).map(|(colour, turn)| (colour + turn).direction()).collect()
+                measured.angles.iter().zip(round).map(|(&angle, turn)| (angle + turn).direction()).collect()
             }
-            Self::TwoColours => quarters(two_colours(measured), 90.0),
+            Self::TwoColours => two_colours(measured),
             Self::Stripes => by_place(&|x, _| (x / 2.0).floor() * 137.5),
             Self::Rings => by_place(&|x, y| 90.0 * (libm::hypot(x - middle[0], y - middle[1]).floor() % 2.0)),
             Self::Ramp => by_place(&|x, _| x * 90.0),
@@ -374,62 +380,8 @@ impl Turn {
     }
 }
 
-/// A proper colouring with four colours wherever exchanging two colours from one neighbour on finds it (A. Kempe 1879,
-/// the tiles with fewest links left to the last).
-fn four_colours(measured: &Measured) -> Vec<u8> {
-    let graph = &measured.graph;
-    let n = graph.len();
-    let mut left: Vec<usize> = (0..n).map(|tile| graph.neighbours(tile).len()).collect();
-    let mut taken = vec![false; n];
-    let mut order = Vec::new();
-    for _ in 0..n {
-        let Some(next) = (0..n).filter(|&tile| !taken[tile]).min_by_key(|&tile| left[tile]) else { break };
-        taken[next] = true;
-        order.push(next);
-        graph.neighbours(next).iter().for_each(|&other| left[other as usize] = left[other as usize].saturating_sub(1));
-    }
-    const NONE: u8 = 4;
-    let mut colours = vec![NONE; n];
-    for &tile in order.iter().rev() {
-        let around = |colours: &[u8]| -> Vec<u8> {
-            graph.neighbours(tile).iter().map(|&other| colours[other as usize]).collect()
-        };
-        let free = |colours: &[u8]| (0..NONE).find(|colour| !around(colours).contains(colour));
-        let pairs = (0..NONE).flat_map(|one| (0..NONE).map(move |two| [one, two])).filter(|[one, two]| one != two);
-        let swaps = pairs.flat_map(|pair| graph.neighbours(tile).iter().map(move |&start| (pair, start as usize)));
-        let tried = std::iter::once(colours.clone())
-            .chain(swaps.map(|(pair, start)| exchanged(measured, &colours, pair, start)));
-        let found = tried.into_iter().find(|colours| free(colours).is_some());
-        colours = found.unwrap_or(colours);
-        colours[tile] = free(&colours).unwrap_or(0);
-    }
-    colours
-}
-
-/// The colouring with two colours exchanged among the tiles that are linked to one through tiles of these two.
-fn exchanged(measured: &Measured, colours: &[u8], [one, two]: [u8; 2], start: usize) -> Vec<u8> {
-    let mut colours = colours.to_vec();
-    if colours[start] != one {
-        return colours;
-    }
-    let mut seen = vec![false; colours.len()];
-    seen[start] = true;
-    let mut open = vec![start];
-    while let Some(tile) = open.pop() {
-        for &other in measured.graph.neighbours(tile) {
-            let other = other as usize;
-            if !seen[other] && (colours[other] == one || colours[other] == two) {
-                seen[other] = true;
-                open.push(other);
-            }
-        }
-        colours[tile] = one + two - colours[tile];
-    }
-    colours
-}
-
 /// Two colours that differ over as many links as moving single tiles finds.
-fn two_colours(measured: &Measured) -> Vec<u8> {
+fn two_colours(measured: &Measured) -> Vec<Angle> {
     let mut colours: Vec<u8> = measured.angles.iter().map(|angle| u8::from(angle.to_radians() > 0.8)).collect();
     for _ in 0..100 {
         let mut is_settled = true;
@@ -445,7 +397,7 @@ fn two_colours(measured: &Measured) -> Vec<u8> {
             break;
         }
     }
-    colours
+    colours.into_iter().map(|colour| Angle::degrees(f64::from(colour) * 90.0)).collect()
 }
 
 /// Sweeps that each give every tile the direction of the greatest sum of contrasts to its neighbours.

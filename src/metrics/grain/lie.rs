@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use crate::geom::{Point, Rect, Vec2};
 use crate::metrics::Measured;
 use crate::pass::link;
+use crate::region::Region;
 use crate::scene::Link;
 use crate::stage::{Graph, Sites, Torus};
 
@@ -26,14 +27,15 @@ pub(super) struct Lie {
 impl Lie {
     /// None where there are too few triangles.
     ///
-    /// A triangle counts where the centre of its circle lies in the region: those that do not are slivers along the
-    /// outline, whose shape is the outline's. A cell is whole where triangles go all round its site and all of them count.
+    /// A triangle counts where the centre of its circle lies in the region, or in the box of the sites where the region is
+    /// not known: those that do not are slivers along the outline, whose shape is the outline's. A cell is whole where triangles go all round its site and all of them count.
     pub(super) fn new(measured: &Measured) -> Option<Self> {
         let graph = triangulated(measured);
+        let region = if measured.region.is_empty() { Region::rect(around(measured)) } else { measured.region.clone() };
         let mut areas = Vec::with_capacity(graph.triangles.len());
         let mut cells = vec![Cell::default(); measured.sites.len()];
         for &corners in &graph.triangles {
-            let Some(triangle) = Triangle::new(measured, corners) else { continue };
+            let Some(triangle) = Triangle::new(measured, &region, corners) else { continue };
             areas.push(triangle.area);
             for (corner, part) in corners.into_iter().zip(triangle.parts) {
                 let cell = &mut cells[corner as usize];
@@ -68,13 +70,17 @@ fn triangulated(measured: &Measured) -> Cow<'_, Graph> {
     if !measured.graph.triangles.is_empty() {
         return Cow::Borrowed(&measured.graph);
     }
-    let points = measured.sites.clone();
-    let first = points.first().copied().unwrap_or_default();
-    let bounds = points.iter().fold(Rect::new(first, first), |bounds, &p| bounds.including(p));
-    let spacing = (measured.region.area() / points.len() as f64).sqrt();
+    let (points, bounds) = (measured.sites.clone(), around(measured));
+    let spacing = (bounds.width() * bounds.height() / points.len() as f64).sqrt();
     let torus = measured.period.map(|period| Torus { period, images: Vec::new() });
     let sites = Sites { points, domain: bounds, extent: bounds, spacing, cells: None, tiling: None, torus };
     Cow::Owned(link::link(&sites, Link::Delaunay))
+}
+
+/// The box around the sites.
+fn around(measured: &Measured) -> Rect {
+    let first = measured.sites.first().copied().unwrap_or_default();
+    measured.sites.iter().fold(Rect::new(first, first), |bounds, &p| bounds.including(p))
 }
 
 /// A triangle that counts.
@@ -87,7 +93,7 @@ struct Triangle {
 }
 
 impl Triangle {
-    fn new(measured: &Measured, corners: [u32; 3]) -> Option<Self> {
+    fn new(measured: &Measured, region: &Region, corners: [u32; 3]) -> Option<Self> {
         let [a, b, c] = corners.map(|corner| measured.sites[corner as usize]);
         let way = |from: Point, to: Point| measured.period.map_or(to - from, |period| period.shortest(to - from));
         let (u, v) = (way(a, b), way(a, c));
@@ -96,7 +102,7 @@ impl Triangle {
         let centre = a + Vec2::new((v.y * uu - u.y * vv) / (2.0 * twice), (u.x * vv - v.x * uu) / (2.0 * twice));
         // Where the corners lie on a line the centre is no number, and nowhere.
         let is_inside = centre.x.is_finite() && centre.y.is_finite();
-        if !is_inside || (measured.period.is_none() && !measured.region.contains(centre)) {
+        if !is_inside || (measured.period.is_none() && !region.contains(centre)) {
             return None;
         }
         // Cotangents at the corners, and what each gives the ends of the side across.

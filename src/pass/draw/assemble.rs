@@ -161,6 +161,20 @@ impl<'a> Assembly<'a> {
         self.add(layers, ink.span)
     }
 
+    /// Lays layers on top of all that is there. On a canvas that repeats what lies beyond its borders comes in at the
+    /// opposite ones.
+    ///
+    /// # Errors
+    /// If the drawing comes to have more marks than the limit allows; `span` is where that is said.
+    pub fn on_top(&mut self, layers: Vec<Layer>, span: Span) -> Result<(), Diagnostic> {
+        let wrapped = |layer| match self.canvas.period() {
+            None => Ok(layer),
+            Some(period) => torus::wrap(layer, period, self.limits.strokes),
+        };
+        let layers: Result<Vec<Layer>, Exceeded> = layers.into_iter().map(wrapped).collect();
+        self.add(layers.map_err(|exceeded| exceeded.diagnostic(self.limits, span))?, span)
+    }
+
     fn add(&mut self, layers: Vec<Layer>, span: Span) -> Result<(), Diagnostic> {
         self.marks += layers.iter().map(Layer::marks).sum::<u64>();
         self.layers.extend(layers);
