@@ -6,6 +6,9 @@
 //! pales.
 
 mod colours;
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;

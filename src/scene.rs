@@ -4,10 +4,12 @@
 //! evaluated, and every number lies in its range. Spans are kept only to say where a limit was met. A new placement,
 //! shape, angle rule or fill is one more line in its enum and one file in its pass.
 
+mod angle;
 mod fill;
 mod hand;
 mod place;
 
+pub use angle::{AngleRule, Bfs, See, Start, Tuned};
 pub use fill::{Cap, Fill, FillKind, Hatch, MotifPath, Swing};
 pub use hand::Hand;
 pub use place::{Amount, GridSize, IRREGULAR_OVERLAP, POINTED_OVERLAP, Placement};
@@ -333,6 +335,9 @@ pub struct Tone {
     pub link: Link,
     /// How the tiles are turned.
     pub angle: AngleRule,
+    /// Where `angle` stands, for warnings.
+    #[serde(skip)]
+    pub angle_span: Span,
     /// What is drawn in them: an item a layer, the last for all further ones; never empty.
     pub fill: Vec<Fill>,
     /// How much is drawn.
@@ -503,25 +508,6 @@ pub enum Link {
     Delaunay,
     /// Cells of a tiling that share an edge, or a part of one.
     Edges,
-}
-
-/// How tiles are turned.
-#[derive(Debug, Clone, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum AngleRule {
-    /// Breadth first, each as far as can be from its placed neighbours.
-    Bfs {
-        /// Steps in half a turn, at least 2.
-        candidates: u32,
-    },
-    /// Independently uniform.
-    Random,
-    /// 0 and a quarter turn by turns along the rows and columns of a grid.
-    Checkerboard,
-    /// All alike.
-    Fixed(Angle),
-    /// The value of a field of angles at the site.
-    Along(Field),
 }
 
 /// What a fraction of k means.

@@ -350,6 +350,41 @@ fn a_plot_says_what_the_pen_does() {
 }
 
 #[test]
+fn a_picture_keeps_what_it_shows_on_top() {
+    let desk = Desk::new();
+    desk.quietly(&["build", "scene.kake", "--overlay", "contrast,angles", "-o", "o.svg", "-o", "o.png", "-o", "o.pdf"]);
+    let text = String::from_utf8(desk.get("o.svg")).expect("SVG is UTF-8");
+    let label = |name: &str| format!("inkscape:label=\"overlay {name}\"");
+    assert_eq!(["angles", "contrast", "sites"].map(|name| text.matches(&label(name)).count()), [1, 1, 0]);
+    // Built again from itself it is the same, with others it has those, and a plot has none.
+    desk.quietly(&["build", "o.svg", "-o", "same.svg"]);
+    assert_eq!(desk.get("o.svg"), desk.get("same.svg"));
+    desk.quietly(&["build", "o.svg", "--overlay", "sites", "-o", "sites.svg"]);
+    let text = String::from_utf8(desk.get("sites.svg")).expect("SVG is UTF-8");
+    assert!(text.contains(&label("sites")) && !text.contains(&label("angles")));
+    desk.quietly(&["build", "scene.kake", "-o", "plain.svg"]);
+    desk.quietly(&["build", "o.svg", "--overlay", "none", "-o", "none.svg"]);
+    assert_eq!(desk.get("plain.svg"), desk.get("none.svg"));
+    assert_eq!(desk.kake(&["build", "o.svg", "--plot", "-o", "plot.svg"]).status(), 0);
+    assert!(!String::from_utf8(desk.get("plot.svg")).expect("SVG is UTF-8").contains("overlay "));
+}
+
+#[test]
+fn metrics_draw_charts() {
+    let desk = Desk::new();
+    let plain = desk.kake(&["metrics", "scene.kake", "--seeds", "0..2"]).out();
+    let ran = desk.kake(&["metrics", "scene.kake", "--seeds", "0..2", "--charts", "made/charts"]);
+    assert_eq!((ran.status(), ran.out()), (0, plain), "{}", ran.err());
+    for paint in ["lattice", "disc"] {
+        for kind in ["correlogram", "decay", "spectrum", "directions", "contrast", "cells"] {
+            let text = String::from_utf8(desk.get(&format!("made/charts/{paint}-{kind}.svg"))).expect("SVG is UTF-8");
+            assert!(text.starts_with("<svg") && text.contains(paint) && !text.contains("NaN"), "{paint} {kind}");
+        }
+    }
+    desk.kake(&["metrics", "scene.kake", "--charts", "scene.kake"]).refused(3, "cannot write scene.kake");
+}
+
+#[test]
 fn a_picture_without_a_scene_says_so() {
     let desk = Desk::new();
     desk.quietly(&["build", "scene.kake", "--embed", "none", "-o", "bare.svg", "-o", "bare.png", "-o", "bare.pdf"]);
@@ -384,6 +419,9 @@ fn faults_of_the_command_line() {
         (&["build", "scene.kake", "--sede", "3"], "--sede"),
         (&["build", "scene.kake", "-o", "x.bmp"], ".svg, .png, .pdf or .json"),
         (&["build", "scene.kake", "--plot", "-o", "x.svg", "-o", "x.png"], "x.png: what is plotted is written as .svg"),
+        (&["build", "scene.kake", "--overlay", "sites,grph"], "a similar value exists: 'graph'"),
+        (&["build", "scene.kake", "--overlay", ""], "'--overlay <LIST>'"),
+        (&["build", "scene.kake", "--overlay", "sites", "--plot"], "cannot be used with '--plot'"),
         (&["build", "scene.kake", "-o", "x.svg", "-o", "x.svg"], "given twice"),
         (&["build", "scene.kake", "-o", "scene.kake"], "the scene itself"),
         (&["build", "scene.kake", "--seed", "-1"], "-1"),

@@ -1,5 +1,6 @@
 //! `kake metrics`: what the patterns of a scene measure.
 
+mod charts;
 mod picture;
 mod table;
 
@@ -11,6 +12,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::diag::{self, Diagnostic};
+use crate::illustrate::Sketch;
 use crate::lower::lower;
 use crate::metrics::read::read;
 use crate::metrics::ssim::Grey;
@@ -44,6 +46,10 @@ pub(super) struct MetricsArgs {
     /// Compare the picture with this one, a PNG or JPEG file of the page's shape: adds the structural similarity `ssim`
     #[arg(long, value_name = "FILE")]
     against: Option<PathBuf>,
+    /// Draw charts into this folder, for every paint PAINT-correlogram.svg, -decay, -spectrum, -directions, -contrast and
+    /// -cells; of several seeds the means with their standard deviations
+    #[arg(long, value_name = "DIR")]
+    charts: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -68,6 +74,9 @@ struct Entry {
     /// How alike the picture and the reference are.
     #[serde(skip_serializing_if = "Option::is_none")]
     ssim: Option<f64>,
+    /// What its charts need, where they are asked for.
+    #[serde(skip)]
+    sketch: Option<Sketch>,
 }
 
 impl Entry {
@@ -98,6 +107,14 @@ pub(super) fn run(arguments: &MetricsArgs) -> Ended {
     };
     if entries.is_empty() {
         eprintln!("kake: there is no paint to be measured");
+    }
+    if let Some(folder) = &arguments.charts
+        && !entries.is_empty()
+    {
+        match charts::write(folder, &entries) {
+            Ended::Done => {}
+            ended => return ended,
+        }
     }
     let printed = match arguments.format {
         Format::Table => Ok(table::text(&entries).into_bytes()),
@@ -146,12 +163,7 @@ fn patterns(arguments: &MetricsArgs) -> Result<Vec<Entry>, Ended> {
             return Err(report::diagnostics(&[no_such_paint(only, &names)], &Sources::new()));
         }
     }
-    let entry = |pattern: &Measured| Entry {
-        paint: pattern.name.clone(),
-        seed: None,
-        measures: Measures::new(pattern),
-        ssim: None,
-    };
+    let entry = |pattern: &Measured| entry(pattern, None, arguments);
     Ok(patterns.par_iter().map(entry).collect())
 }
 
@@ -175,7 +187,7 @@ fn scene(arguments: &MetricsArgs) -> Result<Vec<Entry>, Ended> {
         config
     };
     let runs: Vec<Run> =
-        seeds.into_par_iter().map(|seed| measure(&opened, &config(seed), reference.as_ref())).collect();
+        seeds.into_par_iter().map(|seed| measure(&opened, &config(seed), reference.as_ref(), arguments)).collect();
     // What is wrong with a scene is mostly wrong with every seed; once is enough.
     let worst = runs.iter().find(|run| run.diagnostics.iter().any(Diagnostic::is_error)).or(runs.first());
     if let Some(run) = worst
@@ -187,14 +199,22 @@ fn scene(arguments: &MetricsArgs) -> Result<Vec<Entry>, Ended> {
         eprintln!("kake: {words}");
         return Err(Ended::Fault);
     }
-    let mut entries: Vec<(usize, Entry)> = runs.into_iter().flat_map(|run| run.entries.into_iter().enumerate()).collect();
+    let mut entries: Vec<(usize, Entry)> =
+        runs.into_iter().flat_map(|run| run.entries.into_iter().enumerate()).collect();
     // Paint by paint, in each by seed: the sort is stable.
     entries.sort_by_key(|(paint, _)| *paint);
     Ok(entries.into_iter().map(|(_, entry)| entry).collect())
 }
 
+/// Measures a pattern.
+fn entry(measured: &Measured, seed: Option<u64>, arguments: &MetricsArgs) -> Entry {
+    let measures = Measures::new(measured);
+    let sketch = arguments.charts.is_some().then(|| Sketch::new(measured, &measures));
+    Entry { paint: measured.name.clone(), seed, measures, ssim: None, sketch }
+}
+
 /// Measures every paint of a scene with one seed.
-fn measure(opened: &Opened, config: &Config, reference: Option<&Grey>) -> Run {
+fn measure(opened: &Opened, config: &Config, reference: Option<&Grey>, arguments: &MetricsArgs) -> Run {
     let mut lowered = lower(&opened.path, &opened.loader, &config.lower);
     let mut found = Vec::new();
     let mut entries = Vec::new();
@@ -205,12 +225,10 @@ fn measure(opened: &Opened, config: &Config, reference: Option<&Grey>) -> Run {
         }
         for paint in paints(scene).filter(|paint| config.only.as_ref().is_none_or(|only| paint.name == *only)) {
             match PaintStages::new(paint, &scene.canvas, &config.lower.limits, &mut (), &mut found) {
-                Ok(stages) => entries.push(Entry {
-                    paint: paint.name.clone(),
-                    seed: Some(scene.seed),
-                    measures: Measures::new(&Measured::new(paint, &stages.borrow())),
-                    ssim: None,
-                }),
+                Ok(stages) => {
+                    let measured = Measured::new(paint, &stages.borrow());
+                    entries.push(entry(&measured, Some(scene.seed), arguments));
+                }
                 Err(diagnostic) => found.push(diagnostic),
             }
         }

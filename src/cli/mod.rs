@@ -14,6 +14,7 @@ mod files;
 mod fmt;
 mod ir;
 mod limits;
+mod metrics;
 mod params;
 mod picture;
 mod progress;
@@ -76,6 +77,8 @@ enum Command {
     Ir(ir::IrArgs),
     /// Print a scene's parameters as JSON Schema
     Params(params::ParamsArgs),
+    /// Print what a scene's patterns measure. The scene may also be a .json file as `kake ir --stage tiles` prints it
+    Metrics(metrics::MetricsArgs),
     /// Draw the calibration wedge of a tone, and print what its steps measure
     Wedge(wedge::WedgeArgs),
     /// Run a scene's experiment: every condition with every seed, measured, analysed and pictured
@@ -137,6 +140,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Convert(arguments) => convert::run(&arguments),
         Command::Ir(arguments) => ir::run(&arguments),
         Command::Params(arguments) => params::run(&arguments),
+        Command::Metrics(arguments) => metrics::run(&arguments),
         Command::Wedge(arguments) => wedge::run(&arguments),
         Command::Experiment(arguments) => experiment::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),

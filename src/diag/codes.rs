@@ -87,9 +87,9 @@ codes! {
     UnknownType "unknown-type" "A type is not known"
         "Types are `number length angle percentage colour string point box list range record bool` and the scene's own \
          `region field placement shape angles fill hand tone`."
-    NotYet "not-yet" "A name of the language that this version cannot build"
-        "The name belongs to the language, and scenes that use it can be formatted and converted, but this version of \
-         the program does not draw it. A later one will."
+    Alike "alike" "Neighbours have the same direction"
+        "`coloured` found no way to give every two neighbours different directions with so few, and left some alike. Four \
+         are enough for every page that does not repeat; one that repeats may need up to seven."
     Duplicate "duplicate" "A name is given twice"
         "Declarations, properties, arguments and the names of paints are each given once. Two imports may bring the same \
          declaration, but not two different ones under one name."

@@ -25,6 +25,7 @@ mod tests;
 pub use journal::{Journal, entry, head};
 pub use made::{command, made};
 pub use outcome::{ALPHA, Analysis, CONTRAST, Failure, Outcome, Run};
+pub(crate) use picture::plain as file_name;
 pub use picture::{Picture, count as picture_count, pictures};
 pub use plan::{Condition, Factor, ParamType, Plan, Setting};
 pub use prepare::{Prepared, Request, prepare};

@@ -81,7 +81,7 @@ fn file(plan: &Plan, condition: usize, variant: usize, taken: &mut BTreeSet<Stri
 }
 
 /// A text as a part of a file's name: letters, digits and a few signs that no system minds, everything else a hyphen.
-pub(super) fn plain(text: &str) -> String {
+pub(crate) fn plain(text: &str) -> String {
     let mut out = String::new();
     for letter in text.chars() {
         match letter {

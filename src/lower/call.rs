@@ -33,8 +33,6 @@ pub(super) struct Param {
 pub(super) enum Need {
     Required,
     Optional,
-    /// Part of the language, but not of this version.
-    Later,
 }
 
 /// A parameter that must be given.
@@ -47,11 +45,6 @@ pub(super) const fn optional(name: &'static str, slot: Slot) -> Param {
     Param { name, slot, need: Need::Optional }
 }
 
-/// A parameter that a later version knows.
-pub(super) const fn later(name: &'static str) -> Param {
-    Param { name, slot: Slot::ANY, need: Need::Later }
-}
-
 /// An argument that was evaluated.
 #[derive(Debug, Clone)]
 pub(super) struct Given {
@@ -59,22 +52,22 @@ pub(super) struct Given {
     pub(super) span: Span,
 }
 
-/// Which parameter takes each argument, by its place among the names and then those that a later version knows; `None` for those that none takes, which were reported.
+/// Which parameter takes each argument, by its place among the names; `None` for those that none takes, which were
+/// reported.
 pub(super) fn assign(
     cx: &mut Cx<'_, '_>,
     what: &str,
-    (names, later): (&[&str], &[&str]),
+    names: &[&str],
     arguments: &[ast::Argument],
 ) -> Vec<Option<usize>> {
-    let known = || names.iter().chain(later);
-    let mut taken: Vec<Option<Span>> = vec![None; names.len() + later.len()];
+    let mut taken: Vec<Option<Span>> = vec![None; names.len()];
     let mut next = 0;
     let mut places = Vec::with_capacity(arguments.len());
     for argument in arguments {
         let span = argument.name.as_ref().map_or(argument.value.span, |name| name.span);
         let place = match &argument.name {
             Some(name) => {
-                let place = known().position(|known| spelling(known) == spelling(&name.name));
+                let place = names.iter().position(|known| spelling(known) == spelling(&name.name));
                 if place.is_none() {
                     let message = format!("{what} has no argument `{}`", name.name);
                     let hint = did_you_mean(&name.name, names.iter().copied()).or_else(|| takes(what, names));
@@ -106,7 +99,7 @@ pub(super) fn assign(
         places.push(match place {
             Some(place) => match taken[place] {
                 Some(earlier) => {
-                    let message = format!("{what} is given `{}` twice", known().nth(place).unwrap_or(&""));
+                    let message = format!("{what} is given `{}` twice", names[place]);
                     cx.report(Diagnostic::error(Code::Duplicate, span, message).note(earlier, "first given here"));
                     None
                 }
@@ -138,12 +131,8 @@ pub(super) fn call<'a>(
     mut eval: impl FnMut(&mut Cx<'a, '_>, &'a ast::Expr, Slot) -> Value,
 ) -> Value {
     let what = format!("`{}`", signature.name);
-    // Those that a later version knows come last in every signature.
-    let names: Vec<&str> =
-        signature.params.iter().filter(|param| param.need != Need::Later).map(|param| param.name).collect();
-    let later: Vec<&str> =
-        signature.params.iter().filter(|param| param.need == Need::Later).map(|param| param.name).collect();
-    let places = assign(cx, &what, (&names, &later), arguments);
+    let names: Vec<&str> = signature.params.iter().map(|param| param.name).collect();
+    let places = assign(cx, &what, &names, arguments);
     let lost = places.contains(&None);
     let mut given: Vec<Option<Given>> = signature.params.iter().map(|_| None).collect();
     let mut whole = true;
@@ -154,13 +143,6 @@ pub(super) fn call<'a>(
             whole = false;
             continue;
         };
-        let param = &signature.params[place];
-        if param.need == Need::Later {
-            let span = argument.name.as_ref().map_or(argument.value.span, |name| name.span);
-            cx.report(not_yet(param.name, span));
-            whole = false;
-            continue;
-        }
         let value = coerce(cx, value, slot, argument.value.span);
         whole &= !value.is_unknown();
         given[place] = Some(Given { value, span: argument.value.span });
@@ -183,12 +165,6 @@ pub(super) fn call<'a>(
     }
     let mut call = Call { cx, signature, given, span };
     (signature.build)(&mut call).unwrap_or(Value::Unknown(signature.result))
-}
-
-/// Says that a name belongs to the language but not to this version.
-pub(super) fn not_yet(name: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::NotYet, span, format!("`{name}` is not known to this version yet"))
-        .label("part of the language, but not drawn yet")
 }
 
 /// A call whose arguments are of the right kinds.

@@ -80,10 +80,6 @@ fn check_arguments<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, arguments: &'
 }
 
 fn unknown_call<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span: Span, slot: Slot) {
-    if vocabulary::is_later(name) {
-        cx.report(call::not_yet(name, span));
-        return;
-    }
     if visible(cx, scope).contains(&name) {
         let message = format!("`{name}` is a value, and only functions are called");
         cx.report(Diagnostic::error(Code::Type, span, message));
@@ -185,7 +181,7 @@ pub(super) fn bind_arguments<'a>(
     span: Span,
 ) -> Option<Rc<Scope<'a>>> {
     let names: Vec<&str> = params.iter().map(|param| param.name.name.as_str()).collect();
-    let places = call::assign(cx, what, (&names, &[]), arguments);
+    let places = call::assign(cx, what, &names, arguments);
     let scope = Scope::inside(&cx.modules[module].scope);
     let mut whole = true;
     for argument in arguments.iter().zip(&places).filter(|(_, place)| place.is_none()).map(|(argument, _)| argument) {

@@ -11,7 +11,7 @@ use super::cx::Cx;
 use super::eval::expect;
 use super::scope::{Binding, Declared, Scope};
 use super::value::{Kind, Value};
-use super::{call, params, tone, vocabulary};
+use super::{params, tone, vocabulary};
 
 /// What a bare name stands for: a local, else a word of its place.
 pub(super) fn name<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span: Span, slot: Slot) -> Value {
@@ -27,10 +27,6 @@ pub(super) fn name<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, s
     }
     if let Some(value) = vocabulary::name(cx, name, span, slot) {
         return value;
-    }
-    if vocabulary::is_later(name) {
-        cx.report(call::not_yet(name, span));
-        return Value::UNKNOWN;
     }
     if cx.modules[scope.module].broken.contains(name) {
         return Value::UNKNOWN;

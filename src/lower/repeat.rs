@@ -320,7 +320,12 @@ fn fields<'t>(tone: &'t Tone, given: &ToneValue) -> Vec<(&'static str, &'t Field
             let at = given.span_of("angle").unwrap_or(tone.place_span);
             fields.push(("angle", field, Unit::Direction, at));
         }
-        AngleRule::Bfs { .. } | AngleRule::Random | AngleRule::Checkerboard | AngleRule::Fixed(_) => {}
+        AngleRule::Bfs(_)
+        | AngleRule::Tuned(_)
+        | AngleRule::Coloured { .. }
+        | AngleRule::Random
+        | AngleRule::Checkerboard
+        | AngleRule::Fixed(_) => {}
     }
     fields.extend(density(&tone.place).map(|field| ("density", field, Unit::Number, tone.place_span)));
     fields

@@ -6,8 +6,8 @@ use crate::diag::{Code, Diagnostic, did_you_mean};
 use crate::field::{Field, Node};
 use crate::geom::{Angle, Length};
 use crate::scene::{
-    AngleRule, Asked, Blend, Darkness, Domain, Edge, Fill, FillKind, Ground, Hand, Link, Over, Placement, Range, Shape,
-    Stack, Tone as SceneTone,
+    AngleRule, Asked, Bfs, Blend, Darkness, Domain, Edge, Fill, FillKind, Ground, Hand, Link, Over, Placement, Range,
+    Shape, Stack, Tone as SceneTone,
 };
 use crate::span::Span;
 use crate::syntax::ast::{Argument, Expr, ExprKind, Property, ToneBody};
@@ -63,7 +63,6 @@ const PROPERTIES: [(&str, Slot); 17] = [
 /// Properties without which nothing can be painted.
 const REQUIRED: [&str; 2] = ["place", "fill"];
 
-/// Properties that a later version draws.
 /// Pairs of properties of which a tone has one at most, with what the first is about.
 const RIVALS: [(&str, &str, &str); 4] = [
     (
@@ -407,9 +406,9 @@ impl ToneValue {
             Some(Value::Shape(shape)) => (**shape).clone(),
             _ => Shape::Rect { width: None, height: None, overlap: None, upright: false },
         };
-        let angle = match self.get("angle").map(|given| &given.value) {
-            Some(Value::Angles(rule)) => (**rule).clone(),
-            _ => AngleRule::Bfs { candidates: 360 },
+        let (angle, angle_span) = match self.get("angle") {
+            Some(Given { value: Value::Angles(rule), span, .. }) => ((**rule).clone(), *span),
+            _ => (AngleRule::Bfs(Bfs::default()), span),
         };
         let (asked, asked_span) = self.asked().unwrap_or_else(|| (Asked::K(Field::constant(1.0)), span));
         let (hand, hand_span) = match self.get("hand") {
@@ -448,6 +447,7 @@ impl ToneValue {
             },
             shape,
             angle,
+            angle_span,
             fill: self.fill_list()?,
             asked,
             asked_span,

@@ -4,15 +4,13 @@ use std::f64::consts::FRAC_2_PI;
 
 use serde::Serialize;
 
-use super::{Measured, Scalars, statistics};
-use crate::geom::{Angle, Vec2};
+use super::{Measured, Scalars, mean};
+use crate::geom::Angle;
 use crate::stage::Graph;
+use crate::stats::percentile;
 
-/// The share of the links that may have less contrast than the figure that tells whether tiles run together.
-const FIFTH: f64 = 0.05;
-
-/// An end of a strand counts as facing a neighbour that lies beside it by less than this sine of an angle.
-const BESIDE: f64 = 1e-9;
+/// The per cent of the links that may have less contrast than the figure that tells whether tiles run together.
+const FIFTH: f64 = 5.0;
 
 /// Contrasts over the links: 2/pi times distances on the real projective line, so in [0, 1].
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -37,8 +35,9 @@ pub struct Contrast {
     pub p5_contrast_layers: Option<f64>,
     /// The mean contrast, each link weighted by the mean k of its ends; none where all weights are zero.
     pub e_contrast_k: Option<f64>,
-    /// The mean contrast of the directions in which strokes leave tiles at the ends that face each other, for curved fills;
-    /// `e_contrast` itself where strokes are straight.
+    /// The mean contrast of the directions that strokes have where tiles meet, halfway between their sites: `e_contrast`
+    /// itself where strokes are straight. Strands of nawaami count by the ends that face each other. Of other programs'
+    /// patterns nothing is known of it.
     pub e_contrast_tangent: Option<f64>,
 }
 
@@ -63,22 +62,21 @@ impl Contrast {
 /// Measures the contrasts.
 #[must_use]
 pub fn measure(measured: &Measured) -> Contrast {
-    let mut contrasts: Vec<f64> = measured.graph.edges().map(|edge| measured.contrast(edge)).collect();
-    let e_contrast = statistics::mean(&contrasts).unwrap_or(0.0);
+    let contrasts: Vec<f64> = measured.graph.edges().map(|edge| measured.contrast(edge)).collect();
+    let e_contrast = mean(&contrasts).unwrap_or(0.0);
     let e_bound = bound(measured);
-    let mut layered: Vec<f64> = measured.graph.edges().filter_map(|edge| layered(measured, edge)).collect();
+    let layered: Vec<f64> = measured.graph.edges().filter_map(|edge| layered(measured, edge)).collect();
     let tangents = measured.graph.edges().filter_map(|edge| tangent(measured, edge)).collect::<Vec<f64>>();
     Contrast {
         e_contrast,
         e_bound,
         e_share: e_bound.map(|bound| e_contrast / bound),
+        p5_contrast: percentile(&contrasts, FIFTH),
         min_contrast: contrasts.iter().copied().min_by(f64::total_cmp),
         e_contrast_k: weighted(measured),
-        e_contrast_layers: statistics::mean(&layered),
-        p5_contrast_layers: statistics::percentile(&mut layered, FIFTH),
-        e_contrast_tangent: statistics::mean(&tangents),
-        // Last, for it reorders them.
-        p5_contrast: statistics::percentile(&mut contrasts, FIFTH),
+        e_contrast_layers: mean(&layered),
+        p5_contrast_layers: percentile(&layered, FIFTH),
+        e_contrast_tangent: mean(&tangents),
     }
 }
 
@@ -140,26 +138,15 @@ fn weighted(measured: &Measured) -> Option<f64> {
     (weights > 0.0).then(|| sum / weights)
 }
 
-/// The contrast of the directions at the ends of two tiles' strokes that face each other: of each tile the end that lies
-/// on the neighbour's side of its site. Where a neighbour lies just beside, both ends face it and the nearest directions
-/// count.
+/// The contrast of the directions that the strokes of two tiles have where their cells meet, halfway between the sites. Of
+/// several directions the nearest count.
 fn tangent(measured: &Measured, [a, b]: [u32; 2]) -> Option<f64> {
     let [a, b] = [a, b].map(|tile| tile as usize);
     let way = measured.sites[b] - measured.sites[a];
     let way = measured.period.map_or(way, |period| period.shortest(way));
-    let facing = |tile: usize, way: Vec2| {
-        let ends = measured.tangents.get(tile)?;
-        let along = measured.angles[tile].unit().dot(way);
-        let least = BESIDE * way.length();
-        Some(if along > least {
-            [ends[1]; 2]
-        } else if along < -least {
-            [ends[0]; 2]
-        } else {
-            *ends
-        })
-    };
-    let (near, far) = (facing(a, way)?, facing(b, -way)?);
+    let towards =
+        |tile: usize, way| Some(measured.runs.get(tile)?.towards(measured.sites[tile], measured.angles[tile], way));
+    let (near, far) = (towards(a, way)?, towards(b, -way)?);
     let distances = near.into_iter().flat_map(|a| far.into_iter().map(move |b| of_distance(a.rp1_distance(b))));
     distances.min_by(f64::total_cmp)
 }
@@ -176,6 +163,7 @@ mod tests {
 
     use super::*;
     use crate::geom::{Length, Period, Point, Rect};
+    use crate::metrics::Run;
     use crate::pass::link::link;
     use crate::scene::Link;
     use crate::stage::{Layers, Sites};
@@ -195,7 +183,7 @@ mod tests {
         let angles: Vec<Angle> = angles.iter().map(|&angle| Angle::degrees(angle).direction()).collect();
         Measured {
             sites,
-            tangents: angles.iter().map(|&angle| [angle; 2]).collect(),
+            runs: vec![Run::Straight; angles.len()],
             angles,
             is_triangulated: true,
             ..Measured::nothing(link(&all, Link::Delaunay))
@@ -229,12 +217,14 @@ mod tests {
         }
 
         #[test]
-        fn percentiles_are_those_of_a_sorted_list(mut values in prop::collection::vec(0.0..1.0f64, 1..200), share in 0.0..1.0f64) {
-            let found = statistics::percentile(&mut values.clone(), share).unwrap();
-            values.sort_by(f64::total_cmp);
-            let place = share * (values.len() - 1) as f64;
-            let (low, high) = (values[place.floor() as usize], values[place.ceil() as usize]);
-            prop_assert!((found - (low + (high - low) * place.fract())).abs() < 1e-12);
+        fn a_twentieth_of_the_links_has_less_contrast(measured in patterns()) {
+            let mut all: Vec<f64> = measured.graph.edges().map(|edge| measured.contrast(edge)).collect();
+            all.sort_by(f64::total_cmp);
+            let place = 0.05 * (all.len() - 1) as f64;
+            let (low, high) = (all[place.floor() as usize], all[place.ceil() as usize]);
+            let found = measure(&measured);
+            prop_assert!((found.p5_contrast.unwrap() - (low + (high - low) * place.fract())).abs() < 1e-12);
+            prop_assert_eq!(found.min_contrast, Some(all[0]));
         }
 
         #[test]
@@ -279,7 +269,7 @@ mod tests {
     fn ends_that_face_each_other_meet() {
         let mut measured = pattern(vec![Point::new(1.0, 1.0), Point::new(3.0, 1.0)], &[0.0, 0.0]);
         let [back, forth] = [30.0, 60.0].map(Angle::degrees);
-        measured.tangents = vec![[Angle::ZERO, forth], [back, Angle::ZERO]];
+        measured.runs = [[Angle::ZERO, forth], [back, Angle::ZERO]].map(Run::Strand).to_vec();
         assert!((measure(&measured).e_contrast_tangent.unwrap() - 1.0 / 3.0).abs() < 1e-12);
         // Side by side both ends face the neighbour, and the nearest directions count.
         measured.sites = vec![Point::new(1.0, 1.0), Point::new(1.0, 3.0)];
@@ -294,7 +284,7 @@ mod tests {
             assert_eq!(found.e_contrast, 0.0);
             assert!(found.scalars().iter().skip(1).all(|(_, value)| value.is_none()), "{found:?}");
         }
-        let untold = Measured { tangents: Vec::new(), is_triangulated: false, ..three([0.0, 60.0, 120.0]) };
+        let untold = Measured { runs: Vec::new(), is_triangulated: false, ..three([0.0, 60.0, 120.0]) };
         let found = measure(&untold);
         assert_eq!((found.e_bound, found.e_contrast_k, found.e_contrast_layers), (None, None, None));
         assert_eq!(found.e_contrast_tangent, None);

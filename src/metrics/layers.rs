@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Measured, Scalars, statistics};
+use super::{Measured, Scalars, mean};
 
 /// Figures of layers.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -30,10 +30,7 @@ pub fn measure(measured: &Measured) -> LayerMeasures {
     let ink = |tile: u32| measured.ink.get(tile as usize);
     let differences = measured.graph.edges().filter_map(|[a, b]| Some((ink(a)? - ink(b)?).abs()));
     let isotropies: Vec<f64> = measured.isotropy.iter().copied().flatten().collect();
-    LayerMeasures {
-        density_contrast: statistics::mean(&differences.collect::<Vec<f64>>()),
-        tile_isotropy: statistics::mean(&isotropies),
-    }
+    LayerMeasures { density_contrast: mean(&differences.collect::<Vec<f64>>()), tile_isotropy: mean(&isotropies) }
 }
 
 #[cfg(test)]

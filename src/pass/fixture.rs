@@ -49,6 +49,7 @@ pub(crate) fn paint(canvas: &Canvas, place: Placement, angle: AngleRule) -> Pain
             shape: Shape::Rect { width: None, height: None, overlap: None, upright: false },
             link: Link::Delaunay,
             angle,
+            angle_span: span,
             fill: vec![Fill { kind: FillKind::Lines(hatch), ink: None }],
             asked: Asked::K(Field::constant(1.0)),
             asked_span: span,

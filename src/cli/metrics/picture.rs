@@ -81,7 +81,7 @@ pub(super) fn similarity(mut drawing: Drawing, reference: &Grey) -> Result<f64, 
     }
     drawing.page.pixels = size.map(|side| side as u32);
     let pixels = render(&drawing);
-    let colours = (0..down).flat_map(|y| (0..across).filter_map(move |x| Some((x, y))));
+    let colours = (0..down).flat_map(|y| (0..across).map(move |x| (x, y)));
     let data = colours.map(|(x, y)| pixels.colour(x, y).map_or(u8::MAX, grey)).collect();
     ssim(&Grey { width: across, data }, reference).ok_or_else(|| "the pictures differ in size".to_owned())
 }
@@ -121,7 +121,10 @@ mod tests {
     fn colours_lie_on_white_paper() {
         assert_eq!(grey(Colour::BLACK), 0);
         assert_eq!(grey(Colour { a: 0, ..Colour::BLACK }), 255);
-        assert_eq!((0..=255).map(|v| grey(Colour { r: v, g: v, b: v, a: 255 })).collect::<Vec<u8>>(), (0..=255).collect::<Vec<u8>>());
+        assert_eq!(
+            (0..=255).map(|v| grey(Colour { r: v, g: v, b: v, a: 255 })).collect::<Vec<u8>>(),
+            (0..=255).collect::<Vec<u8>>()
+        );
         assert_eq!(grey(Colour { r: 0, g: 255, b: 0, a: 255 }), 182);
     }
 }

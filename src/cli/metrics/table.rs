@@ -2,15 +2,20 @@
 
 use crate::metrics::correlogram::Correlogram;
 use crate::metrics::{Measures, Scalars};
+use crate::stats::{Summary, summary};
 
 use super::Entry;
 
 /// Columns of a table of several seeds.
 const WIDTH: usize = 100;
 
+/// What the last two rows of such a table are called.
+const MEAN: &str = "mean";
+const DEVIATION: &str = "sd";
+
 /// What figures say, and why they may say nothing. Figures that are not named here stand for themselves.
-const WORDS: [(&str, &str, &str); 27] = [
-    ("e_contrast", "how far neighbours are turned against each other", ""),
+const WORDS: [(&str, &str, &str); 32] = [
+    ("e_contrast", "how far neighbours are turned apart", ""),
     ("e_bound", "the most that these links allow", "links are no triangulation of the plane"),
     ("e_share", "what of that is reached", "links are no triangulation of the plane"),
     ("p5_contrast", "95 % of the links have more", "no links"),
@@ -36,7 +41,12 @@ const WORDS: [(&str, &str, &str); 27] = [
     ("density_contrast", "how much neighbours differ in ink", "no links, or fills not known"),
     ("tile_isotropy", "how evenly strokes cross in a tile", "no tile has strokes, or fills not known"),
     ("ssim", "likeness to the reference picture", ""),
-    ("grain", "likeness to natural grain", "too little to be judged"),
+    ("grain", "how much of a grain the pattern has", "too few tiles, links or triangles"),
+    ("grain_contrast", "neighbours part everywhere", "no links"),
+    ("grain_directions", "many directions wherever one looks", "too few tiles or links"),
+    ("grain_evenness", "tiles lie evenly", "too few tiles or triangles"),
+    ("grain_disorder", "tiles stand in no rows", "too few tiles or triangles"),
+    ("grain_looseness", "cells are not cut to one measure", "too few tiles or triangles"),
 ];
 
 /// The text for all entries; those of one paint follow each other.
@@ -64,13 +74,14 @@ fn heading(paint: &str, measures: &Measures, seed: Option<u64>) -> String {
 fn single(entry: &Entry) -> String {
     let mut text = heading(&entry.paint, &entry.measures, entry.seed);
     let scalars: Scalars = entry.scalars();
-    let figures = || scalars.iter().filter(|(name, _)| !matches!(&**name, "tiles" | "edges") && !is_of_correlogram(name));
+    let figures =
+        || scalars.iter().filter(|(name, _)| !matches!(&**name, "tiles" | "edges") && !is_of_correlogram(name));
     let width = figures().map(|(name, _)| name.len()).max().unwrap_or(0);
     let at_bound = entry.measures.decay.xi_at_bound == Some(true);
     for (name, value) in figures() {
         let words = WORDS.iter().find(|(known, ..)| known == name);
         let note = match (value, words) {
-            (Some(_), _) if name == "xi" && at_bound => "on the bound of the fit: correlations do not fade",
+            (Some(_), _) if name == "xi" && at_bound => "on a bound of the fit, so no more than that",
             (Some(_), Some((_, meaning, _))) => meaning,
             (None, Some((_, _, why))) => why,
             (_, None) => "",
@@ -103,7 +114,9 @@ fn seeds(entries: &[Entry]) -> String {
     let columns = (0..rows[0].len()).filter(|&i| rows.iter().any(|row| row[i].1.is_some()));
     let columns: Vec<usize> = columns.filter(|&i| rows[0][i].0 != "sampled").collect();
     let labels = entries.iter().map(|entry| entry.seed.map(|seed| seed.to_string()).unwrap_or_default());
-    let labels: Vec<String> = labels.chain(["mean".to_owned(), "sd".to_owned()]).collect();
+    let labels: Vec<String> = labels.chain([MEAN.to_owned(), DEVIATION.to_owned()]).collect();
+    let summaries = |column: usize| summary(&rows.iter().filter_map(|row| row[column].1).collect::<Vec<f64>>());
+    let summaries: Vec<Option<Summary>> = (0..rows[0].len()).map(summaries).collect();
     let first = labels.iter().map(String::len).max().unwrap_or(0).max("seed".len());
     let width = |column: usize| rows[0][column].0.len().max(9);
     let mut rest = &columns[..];
@@ -123,16 +136,37 @@ fn seeds(entries: &[Entry]) -> String {
         for (i, label) in labels.iter().enumerate() {
             text += &format!("  {label:>first$}");
             for &column in block {
-                let values = || rows.iter().filter_map(move |row| row[column].1);
-                let value = match rows.get(i) {
-                    Some(row) => row[column].1,
-                    None if label == "mean" => mean(values()),
-                    None => deviation(values()),
+                let value = match (rows.get(i), &summaries[column]) {
+                    (Some(row), _) => row[column].1,
+                    (None, None) => None,
+                    (None, Some(all)) => {
+                        if label == MEAN {
+                            Some(all.mean)
+                        } else {
+                            all.sd
+                        }
+                    }
                 };
-                text += &format!("  {:>1$}", if whole(&rows[0][column].0, i < rows.len()) { plain(value) } else { number(value) }, width(column));
+                let is_count = i < rows.len() && matches!(&*rows[0][column].0, "tiles" | "edges");
+                let value = if is_count { whole(value) } else { number(value) };
+                text += &format!("  {value:>0$}", width(column));
             }
             text.push('\n');
         }
     }
     text
+}
+
+/// A figure with as many digits as one reads.
+fn number(value: Option<f64>) -> String {
+    match value {
+        None => "-".to_owned(),
+        Some(value) if value != 0.0 && !(1e-4..1e5).contains(&value.abs()) => format!("{value:.2e}"),
+        // Nothing below zero is left of what rounds to it.
+        Some(value) => format!("{:.4}", if value.abs() < 5e-5 { 0.0 } else { value }),
+    }
+}
+
+fn whole(value: Option<f64>) -> String {
+    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.0}"))
 }

@@ -36,14 +36,6 @@ const TABLES: [(Option<Kind>, &[Signature]); 9] = [
     (None, mathematics::SIGNATURES),
 ];
 
-/// Names of the language that this version does not draw.
-const LATER: [&str; 2] = ["coloured", "tuned"];
-
-/// Whether a name belongs to the language but not to this version.
-pub(super) fn is_later(name: &str) -> bool {
-    LATER.contains(&name)
-}
-
 /// The signature of a name where it is called. Of names with two meanings the place decides, then the arguments.
 pub(super) fn find(name: &str, slot: Slot, arguments: &[Argument]) -> Option<&'static Signature> {
     // `rect` with `at` is a region, otherwise a stamp.

@@ -3,9 +3,9 @@
 use std::rc::Rc;
 
 use crate::geom::Length;
-use crate::scene::{Amount, AngleRule, GridSize, Placement};
+use crate::scene::{Amount, AngleRule, Bfs, GridSize, Placement, See, Start, Tuned};
 
-use super::super::call::{Call, Signature, later, optional, required};
+use super::super::call::{Call, Signature, optional, required};
 use super::super::convert::{Slot, coerce};
 use super::super::value::{FieldUnit, Kind, TypedField, Value};
 use crate::diag::{Code, Diagnostic};
@@ -14,12 +14,20 @@ use crate::field::Field;
 const LENGTH: Slot = Slot::of(Kind::Length);
 const NUMBER: Slot = Slot::of(Kind::Number);
 const FIELD: Slot = Slot::of(Kind::Field);
+const SEE: Slot = Slot::words(&["primary", "layers"]);
+const START: Slot = Slot::words(&["first", "random"]);
 
 /// The most rows, columns, candidates and tries that are sensible; tiles have a limit of their own.
 const MANY: u32 = 1_000_000;
 
 /// The most rounds of relaxation: long before, sites have all but come to rest.
 const MOST_ROUNDS: u32 = 1000;
+
+/// The greatest weight of what angles are tuned to: more leaves nothing of the others.
+const GREATEST_WEIGHT: f64 = 100.0;
+
+/// The most rounds of tuning.
+const MOST_TUNING: u32 = 10_000;
 
 /// Rounds of relaxation after which sites look even.
 const DEFAULT_ROUNDS: u32 = 5;
@@ -101,10 +109,34 @@ pub(super) const ANGLES: &[Signature] = &[
     Signature {
         name: "bfs",
         result: Some(Kind::Angles),
-        params: &[optional("candidates", NUMBER), later("see"), later("start")],
+        params: &[optional("candidates", NUMBER), optional("see", SEE), optional("start", START)],
         build: |call| {
-            let candidates = call.whole("candidates", 2, MANY, Some(360))?;
-            angles(AngleRule::Bfs { candidates })
+            let candidates = call.whole("candidates", 2, MANY, Some(Bfs::default().candidates))?;
+            angles(AngleRule::Bfs(Bfs { candidates, see: see(call), start: start(call) }))
+        },
+    },
+    Signature {
+        name: "tuned",
+        result: Some(Kind::Angles),
+        params: &[
+            optional("contrast", NUMBER),
+            optional("diversity", NUMBER),
+            optional("grain", NUMBER),
+            optional("rounds", NUMBER),
+            optional("least", NUMBER),
+            optional("candidates", NUMBER),
+            optional("see", SEE),
+            optional("start", START),
+        ],
+        build: tuned,
+    },
+    Signature {
+        name: "coloured",
+        result: Some(Kind::Angles),
+        params: &[optional("colours", NUMBER)],
+        build: |call| {
+            let colours = call.whole("colours", 2, AngleRule::MOST_COLOURS, Some(4))?;
+            angles(AngleRule::Coloured { colours })
         },
     },
     Signature { name: "random", result: Some(Kind::Angles), params: &[], build: |_| angles(AngleRule::Random) },
@@ -144,6 +176,41 @@ fn placement(placement: Placement) -> Option<Value> {
 
 fn angles(rule: AngleRule) -> Option<Value> {
     Some(Value::Angles(Rc::new(rule)))
+}
+
+fn see(call: &Call<'_, '_, '_>) -> See {
+    match call.word("see") {
+        Some("layers") => See::Layers,
+        _ => See::Primary,
+    }
+}
+
+fn start(call: &Call<'_, '_, '_>) -> Start {
+    match call.word("start") {
+        Some("random") => Start::Random,
+        _ => Start::First,
+    }
+}
+
+fn tuned(call: &mut Call<'_, '_, '_>) -> Option<Value> {
+    let usual = Tuned::default();
+    let mut weight = |name, usual| call.within(name, 0.0, GREATEST_WEIGHT, usual);
+    let contrast = weight("contrast", usual.contrast);
+    let diversity = weight("diversity", usual.diversity);
+    let grain = weight("grain", usual.grain);
+    let least = call.within("least", 0.0, 1.0, usual.least);
+    let rounds = call.whole("rounds", 0, MOST_TUNING, Some(usual.rounds));
+    let candidates = call.whole("candidates", 2, Tuned::MOST_CANDIDATES, Some(usual.candidates));
+    angles(AngleRule::Tuned(Tuned {
+        contrast: contrast?,
+        diversity: diversity?,
+        grain: grain?,
+        least: least?,
+        rounds: rounds?,
+        candidates: candidates?,
+        see: see(call),
+        start: start(call),
+    }))
 }
 
 fn poisson(call: &mut Call<'_, '_, '_>) -> Option<Value> {

@@ -179,12 +179,12 @@ mod tests {
     use crate::pass::fixture::{canvas, paint};
     use crate::pass::{cut, link, place, turn};
     use crate::region::Region;
-    use crate::scene::{AngleRule, Limits, Placement, Shape};
+    use crate::scene::{AngleRule, Bfs, Limits, Placement, Shape};
 
     fn cells(field: Field, range: Range, solid: Option<f64>) -> (Canvas, Paint) {
         let canvas = canvas(4.0, 4.0);
         let place = Placement::Poisson { radius: Length::mm(0.3), tries: 30, density: None };
-        let mut paint = paint(&canvas, place, AngleRule::Bfs { candidates: 360 });
+        let mut paint = paint(&canvas, place, AngleRule::Bfs(Bfs::default()));
         paint.tone.shape = Shape::Voronoi { inset: Length::ZERO, round: Length::ZERO };
         paint.tone.bleed = None;
         paint.tone.asked = Asked::Darkness(Darkness { field, range, solid });

@@ -4,6 +4,7 @@
 //! in parallel and do not depend on each other but for dithering, which passes its errors on in the order of sites.
 
 mod darkness;
+mod foreseen;
 mod layers;
 mod stamp;
 mod standing;
@@ -21,6 +22,7 @@ use crate::region::{FillRule, Region};
 use crate::scene::{Asked, Blend, Canvas, Edge, Paint, Range, Shape};
 use crate::stage::{Angles, Graph, Layers, Sites, Standing, Tiles, Tiling};
 use darkness::Bed;
+pub(in crate::pass) use foreseen::foreseen;
 use stamp::Stamp;
 use standing::Ground;
 

@@ -15,7 +15,7 @@ use crate::pass::fixture::{self, canvas};
 use crate::pass::{cut, link, place, turn};
 use crate::region::Region;
 use crate::scene::{
-    AngleRule, Asked, Blend, Cap, Colour, Draw, Edge, Fill, FillKind, GridSize, Ground, Hatch, LayerGroup, Link,
+    AngleRule, Asked, Bfs, Blend, Cap, Colour, Draw, Edge, Fill, FillKind, GridSize, Ground, Hatch, LayerGroup, Link,
     Outline, Over, Placement, Scene, Shape,
 };
 use crate::stage::Standing;
@@ -81,7 +81,7 @@ fn linear(to: Point, start: f64, end: f64) -> Field {
 /// One kake of lines on Poisson-disk squares over the whole canvas.
 fn paint(canvas: &Canvas) -> Paint {
     let place = Placement::Poisson { radius: Length::mm(1.5), tries: 30, density: None };
-    let mut paint = fixture::paint(canvas, place, AngleRule::Bfs { candidates: 360 });
+    let mut paint = fixture::paint(canvas, place, AngleRule::Bfs(Bfs::default()));
     paint.seed = 1;
     paint.tone.bleed = None;
     paint.tone.fill = vec![fill(FillKind::Lines(hatch(0.31, 0.1)))];

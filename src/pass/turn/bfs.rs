@@ -4,29 +4,47 @@
 //! are exact, and broken by the least step. The search starts from the site with the most neighbours, the first of
 //! several, which takes step 0, and visits neighbours in the order of their indices; every other component starts from
 //! its own such site. A site without neighbours takes a random step from its own stream.
+//!
+//! Where all layers are seen, a placed neighbour stands in the way with each of its layers' directions as each of the
+//! tile's own layers sees it: at its step, turned by some of 45, 90 and 135 degrees. Should those be no whole steps,
+//! distances are counted in quarters of one, so that they are exact all the same.
 
 use std::collections::VecDeque;
-use std::f64::consts::PI;
 
-use crate::geom::Angle;
 use crate::random::Key;
 use crate::stage::Graph;
 
-/// A direction for every site of a graph; `candidates` is at least 2.
-pub(super) fn turn(graph: &Graph, candidates: u32, key: &Key<'_>) -> Vec<Angle> {
-    let random = |site| key.tile(site).below(u64::from(candidates)) as u32;
-    let unit = PI / f64::from(candidates);
-    steps(graph, candidates, random)
-        .into_iter()
-        .map(|step| Angle::radians(f64::from(step) * unit).direction())
-        .collect()
+use super::seen::Offsets;
+
+/// A step below `candidates`, which is at least 2, for every site of a graph; `seen` says how many layers are seen of each.
+pub(super) fn turn(graph: &Graph, candidates: u32, seen: &[u8], key: &Key<'_>) -> Vec<u32> {
+    steps(graph, candidates, seen, |site| key.tile(site).below(u64::from(candidates)) as u32)
 }
 
 /// A step that no site has.
 const UNPLACED: u32 = u32::MAX;
 
-/// A step below `candidates` for every site.
-fn steps(graph: &Graph, candidates: u32, random: impl Fn(usize) -> u32) -> Vec<u32> {
+/// Steps in half a turn, and into how many parts each is divided so that eighths of a turn are whole.
+#[derive(Debug, Clone, Copy)]
+struct Circle {
+    parts: u64,
+    around: u64,
+}
+
+impl Circle {
+    fn new(candidates: u32) -> Self {
+        let parts = if candidates.is_multiple_of(4) { 1 } else { 4 };
+        Self { parts, around: u64::from(candidates) * parts }
+    }
+
+    /// A step that is turned by so many eighths of a turn.
+    fn turned(self, step: u32, eighths: u32) -> u64 {
+        (u64::from(step) * self.parts + self.around / 4 * u64::from(eighths)) % self.around
+    }
+}
+
+fn steps(graph: &Graph, candidates: u32, seen: &[u8], random: impl Fn(usize) -> u32) -> Vec<u32> {
+    let circle = Circle::new(candidates);
     let mut steps = vec![UNPLACED; graph.len()];
     let mut queued = vec![false; graph.len()];
     let mut queue = VecDeque::new();
@@ -46,14 +64,15 @@ fn steps(graph: &Graph, candidates: u32, random: impl Fn(usize) -> u32) -> Vec<u
             for &neighbour in graph.neighbours(site as usize) {
                 let step = steps[neighbour as usize];
                 if step != UNPLACED {
-                    placed.push(step);
+                    let offsets = Offsets::between(seen[site as usize], seen[neighbour as usize]);
+                    placed.extend(offsets.eighths().map(|eighths| circle.turned(step, eighths)));
                 }
                 if !queued[neighbour as usize] {
                     queued[neighbour as usize] = true;
                     queue.push_back(neighbour);
                 }
             }
-            steps[site as usize] = farthest(&mut placed, candidates);
+            steps[site as usize] = farthest(&mut placed, circle);
         }
     }
     steps
@@ -82,27 +101,32 @@ fn by_degree(graph: &Graph) -> Vec<u32> {
 
 /// The step whose least circular distance to the placed ones is greatest, the least of several; 0 where none is placed.
 ///
-/// The farthest steps lie in the middles of the widest gaps. In a gap from a to a + g, the step at a + t has the
-/// distance min(t, g - t), which is greatest, g / 2 rounded down, at the lower and at the upper middle. So every gap
-/// whose half, rounded down, is greatest offers its two middles, and no scan over all steps is needed.
-fn farthest(placed: &mut Vec<u32>, candidates: u32) -> u32 {
+/// The farthest steps lie in the middles of the widest gaps. In a gap from a to a + g, what lies at a + t has the
+/// distance min(t, g - t), which is greatest in the middle. So every gap offers the whole steps next to its middle, and
+/// no scan over all steps is needed.
+fn farthest(placed: &mut Vec<u64>, circle: Circle) -> u32 {
     placed.sort_unstable();
     placed.dedup();
     let Some((&first, &last)) = placed.first().zip(placed.last()) else { return 0 };
-    // The gap across the end of the circle, then those between two steps.
-    let across = (last, candidates - last + first);
+    // The gap across the end of the circle, then those between two places.
+    let across = (last, circle.around - last + first);
     let gaps = placed.windows(2).map(|pair| (pair[0], pair[1] - pair[0]));
-    let mut best = (0, candidates);
+    let mut best = (0, circle.around);
     for (start, gap) in std::iter::once(across).chain(gaps) {
-        let half = gap / 2;
-        for middle in [half, gap - half] {
-            let step = ((u64::from(start) + u64::from(middle)) % u64::from(candidates)) as u32;
-            if half > best.0 || (half == best.0 && step < best.1) {
-                best = (half, step);
+        let lower = (start + gap / 2) / circle.parts;
+        let upper = (start + gap.div_ceil(2)).div_ceil(circle.parts);
+        for middle in [lower, upper] {
+            let place = middle * circle.parts;
+            // A narrow gap may hold no whole step.
+            let Some(along) = place.checked_sub(start).filter(|&along| along <= gap) else { continue };
+            let distance = along.min(gap - along);
+            let step = place % circle.around;
+            if distance > best.0 || (distance == best.0 && step < best.1) {
+                best = (distance, step);
             }
         }
     }
-    best.1
+    (best.1 / circle.parts) as u32
 }
 
 #[cfg(test)]
@@ -112,6 +136,11 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::geom::Angle;
+
+    fn alike(graph: &Graph) -> Vec<u8> {
+        vec![1; graph.len()]
+    }
 
     /// The same by definition: every step is tried.
     fn scanned(graph: &Graph, candidates: u32) -> Vec<u32> {
@@ -159,16 +188,32 @@ mod tests {
     proptest! {
         #[test]
         fn middles_of_gaps_are_what_a_scan_finds(graph in graphs(), candidates in prop_oneof![2u32..12, 2u32..=720]) {
-            prop_assert_eq!(steps(&graph, candidates, lonely), scanned(&graph, candidates));
+            prop_assert_eq!(steps(&graph, candidates, &alike(&graph), lonely), scanned(&graph, candidates));
         }
 
         #[test]
-        fn angles_are_whole_steps(graph in graphs(), candidates in 2u32..=720, seed: u64) {
-            let key = Key { seed, name: "paint", purpose: "angle" };
-            for angle in turn(&graph, candidates, &key) {
-                let step = angle.to_radians() / PI * f64::from(candidates);
-                prop_assert!((0.0..PI).contains(&angle.to_radians()));
-                prop_assert!((step - step.round()).abs() < 1e-9);
+        fn layers_are_kept_apart_as_far_as_can_be(
+            (graph, seen) in graphs().prop_flat_map(|graph| {
+                let seen = proptest::collection::vec(0u8..=4, graph.len());
+                (Just(graph), seen)
+            }),
+            candidates in 2u32..60,
+        ) {
+            let steps = steps(&graph, candidates, &seen, lonely);
+            let angle = |step: u32| Angle::degrees(180.0 * f64::from(step) / f64::from(candidates));
+            // In the order of the search every site has the greatest distance from those before it; the last has it
+            // from all.
+            let last = |site: &usize| {
+                graph.neighbours(*site).iter().all(|&j| graph.neighbours(j as usize).len() > graph.neighbours(*site).len())
+                    && graph.neighbours(*site).len() == 1
+            };
+            for site in (0..graph.len()).filter(last) {
+                let other = graph.neighbours(site)[0] as usize;
+                let apart = |step: u32| {
+                    angle(step).layered_distance(seen[site], angle(steps[other]), seen[other]).unwrap_or(Angle::ZERO)
+                };
+                let most = (0..candidates).map(|step| apart(step).to_radians()).fold(0.0, f64::max);
+                prop_assert!((apart(steps[site]).to_radians() - most).abs() < 1e-9);
             }
         }
     }
@@ -176,12 +221,12 @@ mod tests {
     #[test]
     fn a_star_s_centre_is_first() {
         let graph = Graph::new(5, &[[0, 3], [1, 3], [2, 3]], Vec::new());
-        assert_eq!(steps(&graph, 360, |_| 77), [180, 180, 180, 0, 77]);
+        assert_eq!(steps(&graph, 360, &alike(&graph), |_| 77), [180, 180, 180, 0, 77]);
     }
 
     #[test]
     fn the_greatest_candidate_count_is_no_trouble() {
         let graph = Graph::new(3, &[[0, 1], [0, 2], [1, 2]], Vec::new());
-        assert_eq!(steps(&graph, u32::MAX, |_| 0), [0, 2_147_483_647, 3_221_225_471]);
+        assert_eq!(steps(&graph, u32::MAX, &alike(&graph), |_| 0), [0, 2_147_483_647, 3_221_225_471]);
     }
 }

@@ -1,16 +1,24 @@
 //! Turning: the direction of every tile.
 //!
 //! In: a paint, its sites and their links. Out: [`Angles`], one direction in [0, pi) for every site. An angle rule is
-//! one file here and one line in [`turn`].
+//! one file here and one line in [`turn`]. Rules that choose among whole steps of half a turn say how many there are.
 
 mod along;
 mod bfs;
 mod checkerboard;
+mod coloured;
 mod fixed;
 mod random;
+mod seen;
+mod tuned;
 
+use std::f64::consts::PI;
+
+use crate::diag::{Code, Diagnostic};
+use crate::geom::Angle;
+use crate::pass::cut;
 use crate::random::Key;
-use crate::scene::{AngleRule, Paint};
+use crate::scene::{AngleRule, Paint, See, Start};
 use crate::stage::{Angles, Graph, Sites};
 
 /// Turns the tiles of a paint by the rule of its tone.
@@ -18,12 +26,63 @@ use crate::stage::{Angles, Graph, Sites};
 pub fn turn(paint: &Paint, sites: &Sites, graph: &Graph) -> Angles {
     let key = Key { seed: paint.seed, name: &paint.name, purpose: "angle" };
     Angles(match &paint.tone.angle {
-        AngleRule::Bfs { candidates } => bfs::turn(graph, *candidates, &key),
+        AngleRule::Bfs(rule) => {
+            let steps = bfs::turn(graph, rule.candidates, &seen(rule.see, paint, sites, graph), &key);
+            directions(steps, rule.candidates, first(rule.start, rule.candidates, &key))
+        }
+        AngleRule::Tuned(rule) => {
+            let seen = seen(rule.see, paint, sites, graph);
+            let steps = bfs::turn(graph, rule.candidates, &seen, &key);
+            let steps = tuned::tune(graph, &sites.points, &seen, rule, &steps, &Key { purpose: "tune", ..key });
+            directions(steps, rule.candidates, first(rule.start, rule.candidates, &key))
+        }
+        AngleRule::Coloured { colours } => directions(coloured::colours(graph, *colours, &key), *colours, 0),
         AngleRule::Random => random::turn(sites, &key),
         AngleRule::Checkerboard => checkerboard::turn(sites),
         AngleRule::Fixed(angle) => fixed::turn(sites, *angle),
         AngleRule::Along(field) => along::turn(sites, field),
     })
+}
+
+/// The warning that a colouring left neighbours alike.
+#[must_use]
+pub fn alike(paint: &Paint, graph: &Graph, angles: &Angles) -> Option<Diagnostic> {
+    let AngleRule::Coloured { colours } = paint.tone.angle else { return None };
+    let alike = graph.edges().filter(|&[a, b]| angles.0[a as usize] == angles.0[b as usize]).count();
+    if alike == 0 {
+        return None;
+    }
+    let links = graph.edges().count();
+    let message =
+        format!("{colours} directions leave {alike} of {links} pairs of neighbours in `{}` alike", paint.name);
+    let hint = match colours {
+        0..4 => "four directions are enough on any page that does not repeat: `coloured(4)`",
+        _ => "a page that repeats may need up to seven directions: `coloured(7)`",
+    };
+    Some(Diagnostic::warning(Code::Alike, paint.tone.angle_span, message).hint(hint))
+}
+
+/// How many layers are seen of every tile, by what the rule looks at.
+fn seen(see: See, paint: &Paint, sites: &Sites, graph: &Graph) -> Vec<u8> {
+    match see {
+        See::Primary => vec![1; graph.len()],
+        See::Layers => cut::foreseen(paint, sites, graph),
+    }
+}
+
+/// By how many steps all tiles are turned.
+fn first(start: Start, candidates: u32, key: &Key<'_>) -> u32 {
+    match start {
+        Start::First => 0,
+        Start::Random => key.stream().below(u64::from(candidates)) as u32,
+    }
+}
+
+/// The directions of steps below `candidates`, all turned by some.
+fn directions(steps: Vec<u32>, candidates: u32, turned: u32) -> Vec<Angle> {
+    let unit = PI / f64::from(candidates);
+    let step = |step: u32| (u64::from(step) + u64::from(turned)) % u64::from(candidates);
+    steps.into_iter().map(|s| Angle::radians(step(s) as f64 * unit).direction()).collect()
 }
 
 #[cfg(test)]
@@ -35,7 +94,7 @@ mod tests {
     use crate::pass::fixture::{canvas, paint};
     use crate::pass::link::link;
     use crate::pass::place::place;
-    use crate::scene::{Amount, Canvas, GridSize, Limits, Link, Placement};
+    use crate::scene::{Amount, Bfs, Canvas, GridSize, Limits, Link, Placement, Tuned};
 
     /// Places, links and turns.
     fn turned(paint: &Paint, canvas: &Canvas) -> (Sites, Graph, Vec<f64>) {
@@ -92,7 +151,9 @@ mod tests {
     fn nothing_is_turned_where_nothing_is() {
         let canvas = canvas(50.0, 40.0);
         let rules = [
-            AngleRule::Bfs { candidates: 360 },
+            AngleRule::Bfs(Bfs::default()),
+            AngleRule::Tuned(Tuned::default()),
+            AngleRule::Coloured { colours: 4 },
             AngleRule::Random,
             AngleRule::Checkerboard,
             AngleRule::Fixed(Angle::ZERO),
@@ -102,7 +163,10 @@ mod tests {
             assert!(turned(&paint(&canvas, Placement::Points(Vec::new()), rule), &canvas).2.is_empty());
         }
         let one = Placement::Points(vec![Point::new(1.0, 1.0)]);
-        assert_eq!(turned(&paint(&canvas, one, AngleRule::Bfs { candidates: 2 }), &canvas).2.len(), 1);
+        assert_eq!(
+            turned(&paint(&canvas, one, AngleRule::Bfs(Bfs { candidates: 2, ..Bfs::default() })), &canvas).2.len(),
+            1
+        );
     }
 
     /// The report's setup over its seeds: what it measured comes out of these passes too, within what the order of
@@ -111,7 +175,7 @@ mod tests {
     fn the_report_s_means_come_out() {
         let canvas = canvas(6.0, 6.0);
         let place = Placement::Poisson { radius: Length::mm(0.6), tries: 30, density: None };
-        let mut paint = paint(&canvas, place, AngleRule::Bfs { candidates: 360 });
+        let mut paint = paint(&canvas, place, AngleRule::Bfs(Bfs::default()));
         let (mut tiles, mut edges, mut contrast, mut entropy, mut correlation) = (0.0, 0.0, 0.0, 0.0, 0.0);
         for seed in 0..100 {
             paint.seed = seed;
