@@ -5,7 +5,7 @@
 //! the unit vectors at twice the tiles' angles, so a breadth-first search from every tile adds up the vectors it meets at
 //! each distance and multiplies once.
 //!
-//! All tiles are searched from while that is cheap. Where all searches would look along more than [`LINKS`] links, a
+//! All tiles are searched from while that is cheap. Where all searches would look along more than 2^32 links, a
 //! sample of the tiles is searched from instead, drawn without replacement by the seed and the paint's name, and the
 //! error that comes of it is given beside each R_k.
 
