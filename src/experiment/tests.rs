@@ -127,7 +127,7 @@ fn outcomes_do_not_depend_on_the_order_of_runs() {
     let value = |run: usize| [0.5, 0.1, 0.3, 0.7, 0.2, 0.9, 0.4, 0.8][run];
     let figures = |run: usize| {
         let far = [("r1", Some(1.0)), ("r2", (run > 2).then_some(2.0))];
-        let shown = if run % 2 == 0 { 1 } else { 2 };
+        let shown = if run.is_multiple_of(2) { 1 } else { 2 };
         done(run, &[&[("e_contrast", Some(value(run)))], &far[..shown], &[("xi", Some(f64::INFINITY))]].concat())
     };
     let forth = Outcome::new(plan.clone(), (0..8).map(figures));

@@ -5,7 +5,7 @@
 //! the unit vectors at twice the tiles' angles, so a breadth-first search from every tile adds up the vectors it meets at
 //! each distance and multiplies once.
 //!
-//! All tiles are searched from while that is cheap. Where all searches would look along more than [`LINKS`] links, a
+//! All tiles are searched from while that is cheap. Where all searches would look along more than 2^32 links, a
 //! sample of the tiles is searched from instead, drawn without replacement by the seed and the paint's name, and the
 //! error that comes of it is given beside each R_k.
 
@@ -16,11 +16,11 @@ use super::search::{AtDistance, Field, Sums};
 use super::{Measured, Scalars};
 use crate::random::Key;
 
-/// Links that searches from all tiles may look along. A search of [`REACH`] links on a triangulation looks along 4,400, so
-/// that about a million tiles are searched from one and all.
+/// Links that searches from all tiles may look along. A search of [`REACH`] links on a triangulation looks along some 5,000, so
+/// that nearly a million tiles are searched from one and all.
 const LINKS: u64 = 1 << 32;
 
-/// Links that searches from a sample may look along: some 15,000 searches on a triangulation.
+/// Links that searches from a sample may look along: some 12,000 searches on a triangulation.
 const LINKS_OF_SAMPLE: u64 = 1 << 26;
 
 /// Searches that tell how far a search looks on the whole, and the least that a sample has.
@@ -72,19 +72,19 @@ fn within(measured: &Measured, all: u64, sample: u64) -> Correlogram {
         })
         .collect();
     let field = Field::new(&measured.sites, &measured.graph, &vectors);
-    let tiles = vectors.len();
+    let tiles = field.len();
     if field.links() * tiles as u64 <= all {
-        return correlogram(&field.from_all(), tiles);
+        return correlogram(&field.search_all(), tiles);
     }
     let key = Key { seed: measured.seed, name: &measured.name, purpose: "correlogram" };
     let mut sources = shuffled(tiles, key);
     let pilots = PILOTS.min(tiles);
-    let looked = field.from_each(&sources[..pilots]).looked.div_ceil(pilots as u64).max(1);
+    let looked = field.search_each(&sources[..pilots]).looked.div_ceil(pilots as u64).max(1);
     if looked * tiles as u64 <= all {
-        return correlogram(&field.from_all(), tiles);
+        return correlogram(&field.search_all(), tiles);
     }
     sources.truncate((sample / looked).max(PILOTS as u64) as usize);
-    correlogram(&field.from_each(&sources), tiles)
+    correlogram(&field.search_each(&sources), tiles)
 }
 
 /// All tiles in an order that the key draws (Fisher and Yates).

@@ -110,7 +110,7 @@ impl Field {
     }
 
     /// The sums over the searches from all tiles, without those of squares and without the links looked along.
-    pub(super) fn from_all(&self) -> Sums {
+    pub(super) fn search_all(&self) -> Sums {
         let batches: Vec<u32> = (0..self.len().div_ceil(BATCH) as u32).collect();
         let new = || Batch { met: vec![0; self.len()], next: vec![0; self.len()], ..Batch::default() };
         let search = |batch: &mut Batch, numbers: &[u32]| {
@@ -131,7 +131,7 @@ impl Field {
     }
 
     /// The sums over the searches from these tiles, one by one. Sources are visited in the order in which they lie.
-    pub(super) fn from_each(&self, tiles: &[u32]) -> Sums {
+    pub(super) fn search_each(&self, tiles: &[u32]) -> Sums {
         let mut sources: Vec<u32> = tiles.iter().map(|&tile| self.numbers[tile as usize]).collect();
         sources.sort_unstable();
         let new = || Single { stamps: vec![0; self.len()], ..Single::default() };
@@ -337,7 +337,7 @@ mod tests {
             let (sites, graph, vectors) = &pattern;
             let field = Field::new(sites, graph, vectors);
             let tiles: Vec<u32> = (0..vectors.len() as u32).collect();
-            for sums in [field.from_all(), field.from_each(&tiles)] {
+            for sums in [field.search_all(), field.search_each(&tiles)] {
                 prop_assert_eq!(sums.sources, tiles.len());
                 for (at, (a, n)) in sums.at.iter().zip(by_pairs(&pattern)) {
                     prop_assert_eq!(at.n, n);
