@@ -6,8 +6,8 @@ use crate::diag::{Code, Diagnostic, did_you_mean};
 use crate::field::{Field, Node};
 use crate::geom::{Angle, Length};
 use crate::scene::{
-    AngleRule, Asked, Bfs, Blend, Darkness, Domain, Edge, Fill, FillKind, Ground, Hand, Link, Over, Placement, Range, Shape,
-    Stack, Tone as SceneTone,
+    AngleRule, Asked, Bfs, Blend, Darkness, Domain, Edge, Fill, FillKind, Ground, Hand, Link, Over, Placement, Range,
+    Shape, Stack, Tone as SceneTone,
 };
 use crate::span::Span;
 use crate::syntax::ast::{Argument, Expr, ExprKind, Property, ToneBody};

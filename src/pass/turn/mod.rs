@@ -53,7 +53,8 @@ pub fn alike(paint: &Paint, graph: &Graph, angles: &Angles) -> Option<Diagnostic
         return None;
     }
     let links = graph.edges().count();
-    let message = format!("{colours} directions leave {alike} of {links} pairs of neighbours in `{}` alike", paint.name);
+    let message =
+        format!("{colours} directions leave {alike} of {links} pairs of neighbours in `{}` alike", paint.name);
     let hint = match colours {
         0..4 => "four directions are enough on any page that does not repeat: `coloured(4)`",
         _ => "a page that repeats may need up to seven directions: `coloured(7)`",
@@ -162,7 +163,10 @@ mod tests {
             assert!(turned(&paint(&canvas, Placement::Points(Vec::new()), rule), &canvas).2.is_empty());
         }
         let one = Placement::Points(vec![Point::new(1.0, 1.0)]);
-        assert_eq!(turned(&paint(&canvas, one, AngleRule::Bfs(Bfs { candidates: 2, ..Bfs::default() })), &canvas).2.len(), 1);
+        assert_eq!(
+            turned(&paint(&canvas, one, AngleRule::Bfs(Bfs { candidates: 2, ..Bfs::default() })), &canvas).2.len(),
+            1
+        );
     }
 
     /// The report's setup over its seeds: what it measured comes out of these passes too, within what the order of

@@ -90,12 +90,7 @@ impl Links {
             })
             .collect();
         let (second, third): (Vec<_>, Vec<_>) = away.into_iter().map(|[second, third]| (second, third)).unzip();
-        Self {
-            near,
-            offsets,
-            second: Lists::gathered(second.into_iter()),
-            third: Lists::gathered(third.into_iter()),
-        }
+        Self { near, offsets, second: Lists::gathered(second.into_iter()), third: Lists::gathered(third.into_iter()) }
     }
 
     /// Which patches hold sites within three links of each patch's own, in order.
