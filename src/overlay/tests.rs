@@ -83,6 +83,6 @@ fn cells_share_out_the_region() {
     let found = pattern(&paint, &canvas);
     assert!((covered(&found.cells) - 300.0).abs() < 1e-3);
     // Links are as short there as elsewhere.
-    let links = found.measured.graph.edges().map(|edge| found.link(edge));
-    assert!(links.clone().count() > 60 && links.clone().all(|[a, b]| a.distance(b) < 6.0));
+    let links: Vec<_> = found.measured.graph.edges().map(|edge| found.link(edge)).collect();
+    assert!(links.len() > 60 && links.iter().all(|[a, b]| a.distance(*b) < 6.0));
 }

@@ -11,6 +11,9 @@ const TOGETHER: usize = 6;
 /// Factors whose pairs have plots: with more the page would be nothing else.
 const PAIRED: usize = 4;
 
+/// Conditions that are compared with each other in a matrix; more are in the CSV file.
+pub(super) const COMPARED: usize = 16;
+
 /// A chart.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Figure {
@@ -110,7 +113,7 @@ pub(super) fn cohen(outcome: &Outcome, analysis: &Analysis) -> Option<Figure> {
     let measure = &outcome.measures[analysis.measure];
     let conditions: Vec<usize> =
         outcome.plan.design().filter(|&condition| analysis.summaries[condition].is_some()).collect();
-    if conditions.len() < 2 {
+    if !(2..=COMPARED).contains(&conditions.len()) {
         return None;
     }
     let names: Vec<String> = conditions

@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 
 use maud::{Markup, html};
 
+use super::figures::COMPARED;
 use super::words::{Goal, description, digits, maybe, probability};
 use super::{Measure, shown};
 use crate::experiment::{ALPHA, Analysis, Outcome};
 
 /// Pairs of conditions that a table shows; more are in the CSV files.
-const MOST_PAIRS: usize = 300;
+const MOST_PAIRS: usize = 200;
 
 /// A measure with its charts and tables.
 pub(super) fn measure(outcome: &Outcome, measure: &Measure<'_>, anchor: &str, is_open: bool) -> Markup {
@@ -27,6 +28,9 @@ pub(super) fn measure(outcome: &Outcome, measure: &Measure<'_>, anchor: &str, is
             (pairs(analysis))
             @if let Some(figure) = &measure.cohen {
                 (shown([figure]))
+            }
+            @if outcome.plan.design().count() > COMPARED {
+                p.soft { "Cohen's d of all pairs of conditions is in cohen_d.csv." }
             }
             @if outcome.plan.conditions.iter().any(|condition| condition.levels.is_none()) {
                 p.soft { "References take no part in the analysis." }
