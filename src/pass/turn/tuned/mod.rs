@@ -7,7 +7,7 @@
 //! thread, and each tile draws its chances from a stream of its own.
 //!
 //! Costs are looked up by whole steps, and what lies two and three links away is summed once for all offers, so that a
-//! visit takes a bounded time; memory is about 200 bytes a tile.
+//! visit takes a bounded time; memory is about 300 bytes a tile.
 
 mod energy;
 mod links;
