@@ -38,26 +38,26 @@ layer \"upper\" {
 ";
 
 /// A folder of its own for one test.
-struct Desk(TempDir);
+pub(crate) struct Desk(TempDir);
 
 impl Desk {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let desk = Self(TempDir::new().expect("there is room for temporary files"));
         desk.put("scene.kake", SCENE);
         desk
     }
 
-    fn path(&self, file: &str) -> PathBuf {
+    pub(crate) fn path(&self, file: &str) -> PathBuf {
         self.0.path().join(file)
     }
 
-    fn put(&self, file: &str, text: impl AsRef<[u8]>) {
+    pub(crate) fn put(&self, file: &str, text: impl AsRef<[u8]>) {
         let path = self.path(file);
         fs::create_dir_all(path.parent().expect("it lies in the folder")).expect("folders can be made");
         fs::write(path, text).expect("files can be written");
     }
 
-    fn get(&self, file: &str) -> Vec<u8> {
+    pub(crate) fn get(&self, file: &str) -> Vec<u8> {
         fs::read(self.path(file)).unwrap_or_else(|error| panic!("{file}: {error}"))
     }
 
@@ -70,7 +70,7 @@ impl Desk {
     }
 
     /// Runs the program in this folder.
-    fn kake(&self, arguments: &[&str]) -> Ran {
+    pub(crate) fn kake(&self, arguments: &[&str]) -> Ran {
         self.kake_with(arguments, b"")
     }
 
@@ -92,16 +92,16 @@ impl Desk {
 
     /// Runs the program, which must succeed without a word.
     #[track_caller]
-    fn quietly(&self, arguments: &[&str]) {
+    pub(crate) fn quietly(&self, arguments: &[&str]) {
         let ran = self.kake(arguments);
         assert_eq!((ran.status(), ran.out().as_str(), ran.err().as_str()), (0, "", ""), "{arguments:?}");
     }
 }
 
-struct Ran(Output);
+pub(crate) struct Ran(Output);
 
 impl Ran {
-    fn status(&self) -> i32 {
+    pub(crate) fn status(&self) -> i32 {
         self.0.status.code().expect("it ends by itself")
     }
 
@@ -109,7 +109,7 @@ impl Ran {
         String::from_utf8(self.0.stdout.clone()).expect("it prints UTF-8")
     }
 
-    fn err(&self) -> String {
+    pub(crate) fn err(&self) -> String {
         String::from_utf8(self.0.stderr.clone()).expect("it prints UTF-8")
     }
 
@@ -121,7 +121,7 @@ impl Ran {
 
     /// Asserts how it ended, with nothing printed and these words among what was said.
     #[track_caller]
-    fn refused(&self, status: i32, words: &str) {
+    pub(crate) fn refused(&self, status: i32, words: &str) {
         assert_eq!(self.status(), status, "{}", self.err());
         assert_eq!(self.out(), "");
         assert!(self.err().contains(words), "{}", self.err());
@@ -367,6 +367,21 @@ fn a_picture_keeps_what_it_shows_on_top() {
     assert_eq!(desk.get("plain.svg"), desk.get("none.svg"));
     assert_eq!(desk.kake(&["build", "o.svg", "--plot", "-o", "plot.svg"]).status(), 0);
     assert!(!String::from_utf8(desk.get("plot.svg")).expect("SVG is UTF-8").contains("overlay "));
+}
+
+#[test]
+fn metrics_draw_charts() {
+    let desk = Desk::new();
+    let plain = desk.kake(&["metrics", "scene.kake", "--seeds", "0..2"]).out();
+    let ran = desk.kake(&["metrics", "scene.kake", "--seeds", "0..2", "--charts", "made/charts"]);
+    assert_eq!((ran.status(), ran.out()), (0, plain), "{}", ran.err());
+    for paint in ["lattice", "disc"] {
+        for kind in ["correlogram", "decay", "spectrum", "directions", "contrast", "cells"] {
+            let text = String::from_utf8(desk.get(&format!("made/charts/{paint}-{kind}.svg"))).expect("SVG is UTF-8");
+            assert!(text.starts_with("<svg") && text.contains(paint) && !text.contains("NaN"), "{paint} {kind}");
+        }
+    }
+    desk.kake(&["metrics", "scene.kake", "--charts", "scene.kake"]).refused(3, "cannot write scene.kake");
 }
 
 #[test]

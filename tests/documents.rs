@@ -15,7 +15,7 @@ use kakeami::lower::LowerConfig;
 use kakeami::{Config, compile};
 
 /// The documents with scenes in them.
-const DOCUMENTS: [&str; 3] = ["README.md", "docs/language.md", "docs/gallery.md"];
+const DOCUMENTS: [&str; 4] = ["README.md", "docs/language.md", "docs/gallery.md", "docs/grain.md"];
 
 fn repository() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))

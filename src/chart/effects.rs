@@ -25,11 +25,14 @@ pub struct Effect<'a> {
 
 const HEIGHT: f64 = 200.0;
 
+/// A mean with its interval, as far as they can be drawn.
+type Shown = (f64, Option<[f64; 2]>);
+
 /// Draws means over the levels of a factor.
 #[must_use]
 pub fn effects(titles: &Titles<'_>, levels: &[&str], effects: &[Effect<'_>]) -> String {
     let mean = |estimate: &Estimate| Some((finite(estimate.mean)?, estimate.interval.and_then(interval)));
-    let means: Vec<Vec<Option<(f64, Option<[f64; 2]>)>>> = effects
+    let means: Vec<Vec<Option<Shown>>> = effects
         .iter()
         .map(|effect| effect.means.iter().take(levels.len()).map(|e| e.as_ref().and_then(mean)).collect())
         .collect();

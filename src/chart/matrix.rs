@@ -4,7 +4,7 @@ use colorous::{Color, Gradient};
 
 use super::Titles;
 use super::axis::finite;
-use super::sheet::{Anchor, FAINT, INK, SMALL, Sheet, TEXT, shortened, width_of};
+use super::sheet::{Anchor, FAINT, INK, LARGE, SMALL, Sheet, TEXT, shortened, width_of};
 
 /// From the least negative to the greatest value; zero is white.
 const COLOURS: Gradient = colorous::RED_BLUE;
@@ -21,7 +21,7 @@ const NAMES: f64 = 200.0;
 pub fn matrix(titles: &Titles<'_>, rows: &[&str], columns: &[&str], values: &[Vec<Option<f64>>]) -> String {
     let names = rows.iter().map(|name| width_of(name, TEXT)).fold(0.0, f64::max).min(NAMES);
     let left = 18.0 + names;
-    let width = (left + CELL[0] * columns.len() as f64 + 16.0).max(240.0);
+    let width = (left + CELL[0] * columns.len() as f64 + 16.0).max(width_of(titles.title, LARGE) + 24.0);
     let top = 58.0;
     let mut sheet = Sheet::new(width, top + CELL[1] * rows.len() as f64 + 16.0, titles.title);
     let value = |row: usize, column: usize| values.get(row)?.get(column).copied().flatten().and_then(finite);

@@ -7,7 +7,6 @@ use crate::back::json;
 use crate::diag::{self, Diagnostic};
 use crate::geom::{Angle, Point, Rect};
 use crate::lower::lower;
-use crate::metrics::visible;
 use crate::scene::{Paint, Scene};
 use crate::{Config, PaintStages, compile, no_such_paint, paints};
 
@@ -119,9 +118,6 @@ struct PaintIr {
     /// The layers that are seen, where they are not just the nearest to k.
     #[serde(skip_serializing_if = "Option::is_none")]
     layers: Option<Vec<u8>>,
-    /// The rings of what is measured of the region, where it is not its bounds.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    region: Option<Vec<Vec<Point>>>,
     /// Width and height of a page that repeats.
     #[serde(skip_serializing_if = "Option::is_none")]
     period: Option<[f64; 2]>,
@@ -161,9 +157,6 @@ fn paint_ir(paint: &Paint, stages: &PaintStages, stage: Stage) -> PaintIr {
     let layers: Vec<u8> = measured.iter().map(|&site| stages.tiles.layers[site].seen()).collect();
     let nearest = measured.iter().map(|&site| (stages.tiles.k[site] + 0.5).floor());
     let is_nearest = layers.iter().zip(nearest).all(|(&layers, nearest)| f64::from(layers) == nearest);
-    let region = visible(paint, &stages.borrow());
-    let is_box = region.polygons().iter().flat_map(|polygon| polygon.rings()).eq([&region.bounds().corners().to_vec()]);
-    let rings = || region.polygons().iter().flat_map(|polygon| polygon.rings()).cloned().collect();
     let period = stages.sites.period().map(|period| [period.width.to_mm(), period.height.to_mm()]);
     PaintIr {
         paint: paint.name.clone(),
@@ -177,7 +170,6 @@ fn paint_ir(paint: &Paint, stages: &PaintStages, stage: Stage) -> PaintIr {
         tiles: from(Stage::Tiles)
             .then(|| measured.iter().map(|&site| vec![stages.tiles.outline(site).to_vec()]).collect()),
         layers: (from(Stage::Tiles) && !is_nearest).then_some(layers),
-        region: (from(Stage::Tiles) && !(is_box && region.bounds() == paint.region.bounds())).then(rings),
         period: period.filter(|_| from(Stage::Tiles)),
     }
 }

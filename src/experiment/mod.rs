@@ -11,6 +11,7 @@ mod outcome;
 pub mod parquet;
 mod picture;
 mod plan;
+mod prepare;
 mod recipe;
 mod report;
 mod runner;
@@ -18,6 +19,7 @@ mod shard;
 pub mod tables;
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, clippy::panic)]
 mod tests;
 
 pub use journal::{Journal, entry, head};
@@ -26,6 +28,7 @@ pub use outcome::{ALPHA, Analysis, CONTRAST, Failure, Outcome, Run};
 pub(crate) use picture::plain as file_name;
 pub use picture::{Picture, count as picture_count, pictures};
 pub use plan::{Condition, Factor, ParamType, Plan, Setting};
+pub use prepare::{Prepared, Request, prepare};
 pub use recipe::{Bytes, Recipe, Recorder};
 pub use report::{Figure, Report, report};
 pub use runner::{Done, PaintFigures, one, run};

@@ -98,13 +98,15 @@ impl Outcome {
     pub fn of_runs(plan: Plan, done: impl IntoIterator<Item = Done>) -> Self {
         let done: BTreeMap<usize, Done> = done.into_iter().map(|done| (done.run, done)).collect();
         let found = || done.values().filter_map(|done| done.found.as_ref().ok()).flatten();
-        let mut paints = Names::default();
+        let mut paints: Vec<String> = Vec::new();
         let mut measures = Names::default();
         for figures in found() {
-            paints.add(std::slice::from_ref(&figures.paint).iter());
+            if !paints.contains(&figures.paint) {
+                paints.push(figures.paint.clone());
+            }
             measures.add(figures.figures.iter().map(|(name, _)| name));
         }
-        let (paints, measures) = (paints.0, measures.0);
+        let measures = measures.0;
         let places: BTreeMap<&str, usize> = measures.iter().enumerate().map(|(i, name)| (name.as_str(), i)).collect();
         let mut runs = Vec::new();
         let mut failures = Vec::new();

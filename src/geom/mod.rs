@@ -9,6 +9,7 @@ pub mod chain;
 pub mod clip;
 pub mod course;
 mod figure;
+pub mod hilbert;
 pub mod hull;
 mod length;
 mod period;

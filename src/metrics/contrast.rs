@@ -5,15 +5,12 @@ use std::f64::consts::FRAC_2_PI;
 use serde::Serialize;
 
 use super::{Measured, Scalars, mean};
-use crate::geom::{Angle, Vec2};
+use crate::geom::Angle;
 use crate::stage::Graph;
 use crate::stats::percentile;
 
 /// The per cent of the links that may have less contrast than the figure that tells whether tiles run together.
 const FIFTH: f64 = 5.0;
-
-/// An end of a strand counts as facing a neighbour that lies beside it by less than this sine of an angle.
-const BESIDE: f64 = 1e-9;
 
 /// Contrasts over the links: 2/pi times distances on the real projective line, so in [0, 1].
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -38,8 +35,9 @@ pub struct Contrast {
     pub p5_contrast_layers: Option<f64>,
     /// The mean contrast, each link weighted by the mean k of its ends; none where all weights are zero.
     pub e_contrast_k: Option<f64>,
-    /// The mean contrast of the directions in which strokes leave tiles at the ends that face each other, for curved fills;
-    /// `e_contrast` itself where strokes are straight.
+    /// The mean contrast of the directions that strokes have where tiles meet, halfway between their sites: `e_contrast`
+    /// itself where strokes are straight. Strands of nawaami count by the ends that face each other. Of other programs'
+    /// patterns nothing is known of it.
     pub e_contrast_tangent: Option<f64>,
 }
 
@@ -140,26 +138,15 @@ fn weighted(measured: &Measured) -> Option<f64> {
     (weights > 0.0).then(|| sum / weights)
 }
 
-/// The contrast of the directions at the ends of two tiles' strokes that face each other: of each tile the end that lies
-/// on the neighbour's side of its site. Where a neighbour lies just beside, both ends face it and the nearest directions
-/// count.
+/// The contrast of the directions that the strokes of two tiles have where their cells meet, halfway between the sites. Of
+/// several directions the nearest count.
 fn tangent(measured: &Measured, [a, b]: [u32; 2]) -> Option<f64> {
     let [a, b] = [a, b].map(|tile| tile as usize);
     let way = measured.sites[b] - measured.sites[a];
     let way = measured.period.map_or(way, |period| period.shortest(way));
-    let facing = |tile: usize, way: Vec2| {
-        let ends = measured.tangents.get(tile)?;
-        let along = measured.angles[tile].unit().dot(way);
-        let least = BESIDE * way.length();
-        Some(if along > least {
-            [ends[1]; 2]
-        } else if along < -least {
-            [ends[0]; 2]
-        } else {
-            *ends
-        })
-    };
-    let (near, far) = (facing(a, way)?, facing(b, -way)?);
+    let towards =
+        |tile: usize, way| Some(measured.runs.get(tile)?.towards(measured.sites[tile], measured.angles[tile], way));
+    let (near, far) = (towards(a, way)?, towards(b, -way)?);
     let distances = near.into_iter().flat_map(|a| far.into_iter().map(move |b| of_distance(a.rp1_distance(b))));
     distances.min_by(f64::total_cmp)
 }
@@ -176,6 +163,7 @@ mod tests {
 
     use super::*;
     use crate::geom::{Length, Period, Point, Rect};
+    use crate::metrics::Run;
     use crate::pass::link::link;
     use crate::scene::Link;
     use crate::stage::{Layers, Sites};
@@ -195,7 +183,7 @@ mod tests {
         let angles: Vec<Angle> = angles.iter().map(|&angle| Angle::degrees(angle).direction()).collect();
         Measured {
             sites,
-            tangents: angles.iter().map(|&angle| [angle; 2]).collect(),
+            runs: vec![Run::Straight; angles.len()],
             angles,
             is_triangulated: true,
             ..Measured::nothing(link(&all, Link::Delaunay))
@@ -281,7 +269,7 @@ mod tests {
     fn ends_that_face_each_other_meet() {
         let mut measured = pattern(vec![Point::new(1.0, 1.0), Point::new(3.0, 1.0)], &[0.0, 0.0]);
         let [back, forth] = [30.0, 60.0].map(Angle::degrees);
-        measured.tangents = vec![[Angle::ZERO, forth], [back, Angle::ZERO]];
+        measured.runs = [[Angle::ZERO, forth], [back, Angle::ZERO]].map(Run::Strand).to_vec();
         assert!((measure(&measured).e_contrast_tangent.unwrap() - 1.0 / 3.0).abs() < 1e-12);
         // Side by side both ends face the neighbour, and the nearest directions count.
         measured.sites = vec![Point::new(1.0, 1.0), Point::new(1.0, 3.0)];
@@ -296,7 +284,7 @@ mod tests {
             assert_eq!(found.e_contrast, 0.0);
             assert!(found.scalars().iter().skip(1).all(|(_, value)| value.is_none()), "{found:?}");
         }
-        let untold = Measured { tangents: Vec::new(), is_triangulated: false, ..three([0.0, 60.0, 120.0]) };
+        let untold = Measured { runs: Vec::new(), is_triangulated: false, ..three([0.0, 60.0, 120.0]) };
         let found = measure(&untold);
         assert_eq!((found.e_bound, found.e_contrast_k, found.e_contrast_layers), (None, None, None));
         assert_eq!(found.e_contrast_tangent, None);

@@ -5,32 +5,26 @@
 //! the unit vectors at twice the tiles' angles, so a breadth-first search from every tile adds up the vectors it meets at
 //! each distance and multiplies once.
 //!
-//! From every tile is what is done while it is cheap. Where the links that all searches would look along are more than
-//! [`LINKS_LOOKED_ALONG`], a sample of the tiles is searched from instead, drawn without replacement by the seed and the
-//! paint's name; the error that comes of it is given beside each R_k. Neither the choice nor any sum depends on threads:
-//! sources are taken in chunks of fixed size whose sums are added in order.
+//! All tiles are searched from while that is cheap. Where all searches would look along more than 2^32 links, a
+//! sample of the tiles is searched from instead, drawn without replacement by the seed and the paint's name, and the
+//! error that comes of it is given beside each R_k.
 
-use std::cmp::Ordering;
-
-use rayon::prelude::*;
 use serde::Serialize;
 
+pub use super::search::REACH;
+use super::search::{AtDistance, Field, Sums};
 use super::{Measured, Scalars};
 use crate::random::Key;
-use crate::stage::Graph;
 
-/// The greatest distance looked at.
-pub const REACH: usize = 15;
+/// Links that searches from all tiles may look along. A search of [`REACH`] links on a triangulation looks along some 5,000, so
+/// that nearly a million tiles are searched from one and all.
+const LINKS: u64 = 1 << 32;
 
-/// Links that all searches together may look along. Searches of [`REACH`] links on a triangulation look along 4,400, so
-/// that some 240,000 tiles are searched from one and all; it takes about a second on one core.
-const LINKS_LOOKED_ALONG: u64 = 1 << 30;
+/// Links that searches from a sample may look along: some 12,000 searches on a triangulation.
+const LINKS_OF_SAMPLE: u64 = 1 << 26;
 
-/// Searches that tell how far a search looks on the whole.
+/// Searches that tell how far a search looks on the whole, and the least that a sample has.
 const PILOTS: usize = 64;
-
-/// Sources whose sums are added up in sequence.
-const CHUNK: usize = 256;
 
 /// The names of R_1, R_2, … as single figures.
 const NAMES: [&str; REACH] =
@@ -64,11 +58,11 @@ impl Correlogram {
 /// Measures the correlogram.
 #[must_use]
 pub fn measure(measured: &Measured) -> Correlogram {
-    within(measured, LINKS_LOOKED_ALONG)
+    within(measured, LINKS, LINKS_OF_SAMPLE)
 }
 
-/// Measures the correlogram, looking along so many links at most.
-fn within(measured: &Measured, links: u64) -> Correlogram {
+/// Measures the correlogram, looking along so many links from all tiles or from a sample.
+fn within(measured: &Measured, all: u64, sample: u64) -> Correlogram {
     let vectors: Vec<[f64; 2]> = measured
         .angles
         .iter()
@@ -77,25 +71,20 @@ fn within(measured: &Measured, links: u64) -> Correlogram {
             [cos, sin]
         })
         .collect();
-    let field = Field { graph: &measured.graph, vectors: &vectors };
-    let tiles = vectors.len();
-    let at_most = 2 * measured.graph.edges().count() as u64 * tiles as u64;
-    let all = || (0..tiles as u32).collect::<Vec<u32>>();
-    if at_most <= links {
-        return field.sums(&all()).correlogram(tiles);
+    let field = Field::new(&measured.sites, &measured.graph, &vectors);
+    let tiles = field.len();
+    if field.links() * tiles as u64 <= all {
+        return correlogram(&field.search_all(), tiles);
     }
     let key = Key { seed: measured.seed, name: &measured.name, purpose: "correlogram" };
     let mut sources = shuffled(tiles, key);
     let pilots = PILOTS.min(tiles);
-    let looked = field.sums(&sources[..pilots]).looked.div_ceil(pilots as u64).max(1);
-    let affordable = (links / looked).max(PILOTS as u64);
-    if affordable >= tiles as u64 {
-        return field.sums(&all()).correlogram(tiles);
+    let looked = field.search_each(&sources[..pilots]).looked.div_ceil(pilots as u64).max(1);
+    if looked * tiles as u64 <= all {
+        return correlogram(&field.search_all(), tiles);
     }
-    sources.truncate(affordable as usize);
-    // In their own order they lie closer together in memory.
-    sources.sort_unstable();
-    field.sums(&sources).correlogram(tiles)
+    sources.truncate((sample / looked).max(PILOTS as u64) as usize);
+    correlogram(&field.search_each(&sources), tiles)
 }
 
 /// All tiles in an order that the key draws (Fisher and Yates).
@@ -109,156 +98,120 @@ fn shuffled(tiles: usize, key: Key<'_>) -> Vec<u32> {
     order
 }
 
-/// What is searched: the links, and the unit vector at twice the angle of each tile.
-#[derive(Clone, Copy)]
-struct Field<'a> {
-    graph: &'a Graph,
-    vectors: &'a [[f64; 2]],
+/// What follows for a pattern of so many tiles.
+fn correlogram(sums: &Sums, tiles: usize) -> Correlogram {
+    // A distance is reached through all lesser ones, so that the first without pairs ends the list.
+    let at = || sums.at.iter().take_while(|at| at.n > 0);
+    // Every pair is met from both its ends.
+    let r = at().map(|at| (at.a / at.n as f64).clamp(-1.0, 1.0)).collect();
+    if sums.sources == tiles {
+        return Correlogram { r, pairs: at().map(|at| at.n / 2).collect(), r_se: None, sampled: None };
+    }
+    let (m, all) = (sums.sources as f64, tiles as f64);
+    Correlogram {
+        r,
+        pairs: at().map(|at| (at.n as f64 * all / m / 2.0).round() as u64).collect(),
+        r_se: Some(at().map(|at| error(at, m, all)).collect()),
+        sampled: Some(sums.sources),
+    }
 }
 
-impl Field<'_> {
-    /// The sums over the searches from these tiles.
-    fn sums(self, sources: &[u32]) -> Sums {
-        let search = || Search { stamps: vec![0; self.vectors.len()], stamp: 0, met: Vec::new() };
-        let chunk = |search: &mut Search, chunk: &[u32]| {
-            let mut sums = Sums::default();
-            for &source in chunk {
-                search.from(self, source, &mut sums);
-            }
-            sums
+/// The standard error of the ratio of two sums over m sources drawn from all without replacement (Cochran 1977, Sampling
+/// Techniques, section 6.3).
+fn error(at: &AtDistance, m: f64, all: f64) -> f64 {
+    let n = at.n as f64;
+    let ratio = at.a / n;
+    let residuals = (at.aa - 2.0 * ratio * at.an + ratio * ratio * at.nn).max(0.0);
+    ((1.0 - m / all) * residuals / (m - 1.0) / m).sqrt() / (n / m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::{Angle, Point};
+
+    /// Rows and columns of tiles, linked to those beside and below, and turned by what a function makes of column and row.
+    fn grid(columns: u32, rows: u32, angle: impl Fn(u32, u32) -> f64) -> Measured {
+        let cells = || (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y)));
+        let edges: Vec<[u32; 2]> = cells()
+            .flat_map(|(x, y)| {
+                let tile = y * columns + x;
+                let beside = (x + 1 < columns).then_some([tile, tile + 1]);
+                let below = (y + 1 < rows).then_some([tile, tile + columns]);
+                beside.into_iter().chain(below)
+            })
+            .collect();
+        Measured::of_squares(
+            [f64::from(columns), f64::from(rows)],
+            cells().map(|(x, y)| Point::new(f64::from(x) + 0.5, f64::from(y) + 0.5)).collect(),
+            &edges,
+            cells().map(|(x, y)| Angle::degrees(angle(x, y))).collect(),
+            0.9,
+        )
+    }
+
+    fn waves(x: u32, y: u32) -> f64 {
+        f64::from((x * x + 3 * y * x + 7 * y) % 180)
+    }
+
+    #[test]
+    fn a_board_of_two_directions_alternates() {
+        let correlogram = measure(&grid(5, 3, |x, y| f64::from((x + y) % 2) * 90.0));
+        assert_eq!(correlogram.r.len(), 6);
+        for (r, k) in correlogram.r.iter().zip(1..) {
+            let expected = if k % 2 == 0 { 1.0 } else { -1.0 };
+            assert!((r - expected).abs() < 1e-12, "{k}: {r}");
+        }
+        // So many pairs are one step apart, and the corners six.
+        assert_eq!((correlogram.pairs[0], correlogram.pairs[5]), (22, 2));
+        assert_eq!(correlogram.pairs.iter().sum::<u64>(), 15 * 14 / 2);
+    }
+
+    #[test]
+    fn columns_are_the_same_for_every_pattern() {
+        let [few, many] = [grid(2, 1, waves), grid(20, 20, waves)].map(|measured| measure(&measured).scalars());
+        let names = |scalars: &Scalars| scalars.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+        assert_eq!(names(&few), names(&many));
+        assert_eq!(few.iter().filter(|(_, value)| value.is_some()).count(), 1);
+        assert_eq!(many.iter().filter(|(_, value)| value.is_some()).count(), REACH);
+    }
+
+    #[test]
+    fn nothing_is_said_of_tiles_without_links() {
+        assert_eq!(measure(&grid(1, 1, waves)), Correlogram::default());
+        assert_eq!(measure(&grid(0, 0, waves)), Correlogram::default());
+    }
+
+    #[test]
+    fn threads_change_no_bit() {
+        let measured = grid(60, 60, waves);
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| (within(&measured, u64::MAX, u64::MAX), within(&measured, 0, 1 << 18)))
         };
-        // A small pattern is measured among many others that keep the cores busy.
-        let chunks: Vec<Sums> = if sources.len() <= 4 * CHUNK {
-            let mut search = search();
-            sources.chunks(CHUNK).map(|sources| chunk(&mut search, sources)).collect()
-        } else {
-            sources.par_chunks(CHUNK).map_init(search, |search, sources| chunk(search, sources)).collect()
-        };
-        chunks.iter().fold(Sums::default(), |sum, chunk| sum.with(chunk))
-    }
-}
-
-/// Breadth-first searches one after the other.
-struct Search {
-    /// The number of the search that met a tile last.
-    stamps: Vec<u32>,
-    /// The number of this search.
-    stamp: u32,
-    /// What this search has met, by distance.
-    met: Vec<u32>,
-}
-
-impl Search {
-    /// Searches from a tile and adds what it finds.
-    fn from(&mut self, field: Field<'_>, source: u32, sums: &mut Sums) {
-        self.stamp += 1;
-        self.stamps[source as usize] = self.stamp;
-        self.met.clear();
-        self.met.push(source);
-        sums.sources += 1;
-        let [x, y] = field.vectors[source as usize];
-        let mut start = 0;
-        for at in &mut sums.at {
-            let end = self.met.len();
-            let [mut sum_x, mut sum_y] = [0.0; 2];
-            for tile in start..end {
-                let neighbours = field.graph.neighbours(self.met[tile] as usize);
-                sums.looked += neighbours.len() as u64;
-                for &other in neighbours {
-                    if self.stamps[other as usize] != self.stamp {
-                        self.stamps[other as usize] = self.stamp;
-                        self.met.push(other);
-                        let [other_x, other_y] = field.vectors[other as usize];
-                        sum_x += other_x;
-                        sum_y += other_y;
-                    }
-                }
-            }
-            if self.met.len() == end {
-                break;
-            }
-            at.add(x * sum_x + y * sum_y, (self.met.len() - end) as u64);
-            start = end;
-        }
-    }
-}
-
-/// Sums over searches.
-#[derive(Debug, Clone, Default)]
-struct Sums {
-    /// How many searches there were.
-    sources: usize,
-    /// Along how many links they looked.
-    looked: u64,
-    at: [AtDistance; REACH],
-}
-
-/// Sums over searches of what they found at one distance: a is the sum of the cosines, n their number.
-#[derive(Debug, Clone, Copy, Default)]
-struct AtDistance {
-    a: f64,
-    n: u64,
-    aa: f64,
-    an: f64,
-    nn: f64,
-}
-
-impl AtDistance {
-    fn add(&mut self, a: f64, count: u64) {
-        let n = count as f64;
-        self.a += a;
-        self.n += count;
-        self.aa += a * a;
-        self.an += a * n;
-        self.nn += n * n;
-    }
-}
-
-impl Sums {
-    fn with(mut self, other: &Self) -> Self {
-        self.sources += other.sources;
-        self.looked += other.looked;
-        for (sum, other) in self.at.iter_mut().zip(&other.at) {
-            sum.a += other.a;
-            sum.n += other.n;
-            sum.aa += other.aa;
-            sum.an += other.an;
-            sum.nn += other.nn;
-        }
-        self
+        assert_eq!(on(1), on(4));
     }
 
-    /// What follows for a pattern of so many tiles.
-    fn correlogram(&self, tiles: usize) -> Correlogram {
-        // A distance is reached through all lesser ones, so that the first without pairs ends the list.
-        let at = || self.at.iter().take_while(|at| at.n > 0);
-        // Every pair is met from both its ends.
-        let r = at().map(|at| (at.a / at.n as f64).clamp(-1.0, 1.0)).collect();
-        match self.sources.cmp(&tiles) {
-            Ordering::Less => {
-                let (m, all) = (self.sources as f64, tiles as f64);
-                Correlogram {
-                    r,
-                    pairs: at().map(|at| (at.n as f64 * all / m / 2.0).round() as u64).collect(),
-                    r_se: Some(at().map(|at| at.error(m, all)).collect()),
-                    sampled: Some(self.sources),
-                }
-            }
-            Ordering::Equal | Ordering::Greater => {
-                Correlogram { r, pairs: at().map(|at| at.n / 2).collect(), r_se: None, sampled: None }
+    #[test]
+    fn a_sample_says_how_far_it_is_off() {
+        let mut measured = grid(50, 50, waves);
+        let exact = measure(&measured);
+        let mut squares = 0.0;
+        for seed in 0..20 {
+            measured.seed = seed;
+            let sample = within(&measured, 0, 1 << 19);
+            let (errors, sampled) = (sample.r_se.unwrap(), sample.sampled.unwrap());
+            assert!((200..2500).contains(&sampled), "{sampled}");
+            for (k, error) in errors.iter().enumerate() {
+                let off = (sample.r[k] - exact.r[k]) / error;
+                assert!(off.abs() < 5.0, "seed {seed}, r{}: {} instead of {}", k + 1, sample.r[k], exact.r[k]);
+                squares += off * off / (20.0 * REACH as f64);
+                // The number of pairs is estimated too.
+                let [ours, all] = [sample.pairs[k], exact.pairs[k]].map(|pairs| pairs as f64);
+                assert!((ours / all - 1.0).abs() < 0.1, "{ours} {all}");
             }
         }
-    }
-}
-
-impl AtDistance {
-    /// The standard error of the ratio of two sums over m sources drawn from all without replacement (Cochran 1977,
-    /// Sampling Techniques, section 6.3).
-    fn error(&self, m: f64, all: f64) -> f64 {
-        let n = self.n as f64;
-        let ratio = self.a / n;
-        let residuals = (self.aa - 2.0 * ratio * self.an + ratio * ratio * self.nn).max(0.0);
-        let mean = n / m;
-        ((1.0 - m / all) * residuals / (m - 1.0) / m).sqrt() / mean
+        // Errors are of the size that is said.
+        assert!((0.5..1.5).contains(&squares), "{squares}");
     }
 }

@@ -175,3 +175,56 @@ impl Envelope {
 fn distances() -> impl Iterator<Item = f64> {
     (1u32..).map(f64::from)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(r: &[f64], pairs: &[u64]) -> Decay {
+        measure(&Correlogram { r: r.to_vec(), pairs: pairs.to_vec(), ..Correlogram::default() })
+    }
+
+    /// A law with a little that it does not say, alternating in sign.
+    fn of_law(law: impl Fn(f64) -> f64) -> Decay {
+        let r: Vec<f64> = distances()
+            .take(12)
+            .zip([1.0, -1.0, -1.0, 1.0].into_iter().cycle())
+            .map(|(k, sign)| sign * law(k) + 1e-4 * sign)
+            .collect();
+        of(&r, &[200, 400, 600, 700, 800, 800, 700, 600, 400, 200, 100, 10])
+    }
+
+    #[test]
+    fn laws_are_told_apart() {
+        let exponential = of_law(|k| 0.8 * libm::exp(-k / 3.0));
+        assert_eq!((exponential.decay, exponential.xi_at_bound), (Some(Law::Exponential), Some(false)));
+        assert!((exponential.xi.unwrap() - 3.0).abs() < 0.01, "{exponential:?}");
+        assert!(exponential.xi_r2.unwrap() > 0.999 && exponential.xi_r2_weighted.unwrap() > 0.999);
+        let power = of_law(|k| 0.8 * libm::pow(k, -1.5));
+        assert_eq!(power.decay, Some(Law::Power));
+        assert!((power.decay_a.unwrap() - 1.5).abs() < 0.01, "{power:?}");
+    }
+
+    #[test]
+    fn what_cannot_be_said_is_none() {
+        assert_eq!(of(&[], &[]), Decay::default());
+        assert_eq!(of(&[0.5], &[10]), Decay::default());
+        assert_eq!(of(&[0.005, -0.009], &[10, 10]), Decay { xi: Some(0.0), ..Decay::default() });
+        // Two parameters and the variance leave nothing to compare by with four distances.
+        let few = of(&[-0.4, 0.2, -0.1, 0.07], &[10, 20, 20, 10]);
+        assert_eq!((few.aicc_exp, few.aicc_power, few.decay), (None, None, None));
+        assert!(few.xi.is_some() && few.decay_a.is_some());
+    }
+
+    #[test]
+    fn what_does_not_fade_ends_on_the_bound() {
+        let decay = of(&[1.0; 8], &[10; 8]);
+        assert_eq!((decay.xi, decay.xi_at_bound), (Some(100.0), Some(true)));
+        assert_eq!((decay.xi_r2, decay.xi_r2_weighted), (None, None));
+        assert_eq!(decay.decay_a, Some(0.0));
+        // A fall too steep for an amplitude of 2 ends on that.
+        let decay = of(&[0.5, 0.0001, 0.0001], &[10; 3]);
+        assert_eq!(decay.xi_at_bound, Some(true));
+        assert!((decay.xi.unwrap() - 0.67117).abs() < 1e-4, "{decay:?}");
+    }
+}

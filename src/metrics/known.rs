@@ -86,3 +86,13 @@ fn measures_are_those_of_the_report() {
         assert_eq!(measures["pairs"], known["pairs"], "{name}");
     }
 }
+
+#[test]
+fn the_checkerboard_fits_by_its_weights_alone() {
+    let (_, measured, _) = configurations().into_iter().find(|(name, ..)| name == "gridCheckerboard 0").unwrap();
+    let decay = Measures::new(&measured).decay;
+    assert!((decay.xi.unwrap() - 2.047).abs() < 1e-3);
+    assert!((decay.xi_r2.unwrap() + 0.384).abs() < 1e-3);
+    assert!((decay.xi_r2_weighted.unwrap() - 0.881).abs() < 1e-3);
+    assert_eq!(decay.xi_at_bound, Some(false));
+}

@@ -2,11 +2,12 @@
 
 use crate::geom::{Angle, Period, Point};
 use crate::pass::cut::inked;
-use crate::pass::draw::{Stages, tangents};
+use crate::pass::draw::Stages;
 use crate::region::Region;
 use crate::scene::{Link, Paint};
 use crate::stage::{Graph, Layers};
 
+use super::runs::Run;
 use super::strokes::Strokes;
 
 /// A pattern as it is measured. All lists have one entry a tile, but those of which nothing is known are empty: a pattern
@@ -34,8 +35,8 @@ pub struct Measured {
     pub layers: Vec<Layers>,
     /// The outline of each tile as cut; empty where an inset left nothing.
     pub outlines: Vec<Vec<Point>>,
-    /// The directions, in [0, pi), in which the strokes of each tile leave it backwards and forwards along its angle.
-    pub tangents: Vec<[Angle; 2]>,
+    /// How the strokes of each tile's first layer run.
+    pub runs: Vec<Run>,
     /// The share of the paper that each tile's layers ink, in [0, 1].
     pub ink: Vec<f64>,
     /// How evenly the strokes of each tile run in all directions, in [0, 1]; none without strokes.
@@ -45,8 +46,7 @@ pub struct Measured {
 }
 
 /// What of a paint's region lies where sites were asked for: what is off the canvas has no tiles to be measured.
-#[must_use]
-pub fn visible(paint: &Paint, stages: &Stages<'_>) -> Region {
+fn visible(paint: &Paint, stages: &Stages<'_>) -> Region {
     let (domain, bounds) = (stages.sites.domain, paint.region.bounds());
     if domain.intersection(&bounds) == bounds {
         return paint.region.clone();
@@ -70,7 +70,6 @@ impl Measured {
         let period = stages.sites.period();
         let layers: Vec<Layers> = inside.iter().map(|&tile| stages.tiles.layers[tile]).collect();
         let outlines: Vec<Vec<Point>> = inside.iter().map(|&tile| stages.tiles.outline(tile).to_vec()).collect();
-        let tangents = tangents(paint, stages);
         let strokes = Strokes::of(&paint.tone.fill);
         Self {
             name: paint.name.clone(),
@@ -81,7 +80,7 @@ impl Measured {
             is_triangulated: paint.tone.link == Link::Delaunay && period.is_none(),
             angles: inside.iter().map(|&tile| stages.angles.0[tile]).collect(),
             k: inside.iter().map(|&tile| stages.tiles.k[tile]).collect(),
-            tangents: inside.iter().map(|&tile| tangents[tile]).collect(),
+            runs: Run::of(paint, stages, &inside),
             ink: inked(paint, &layers, &outlines),
             isotropy: layers.iter().map(|&layers| strokes.isotropy(layers)).collect(),
             layers,
@@ -103,7 +102,7 @@ impl Measured {
             k: Vec::new(),
             layers: Vec::new(),
             outlines: Vec::new(),
-            tangents: Vec::new(),
+            runs: Vec::new(),
             ink: Vec::new(),
             isotropy: Vec::new(),
             period: None,

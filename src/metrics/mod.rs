@@ -8,11 +8,14 @@ pub mod contrast;
 pub mod correlogram;
 pub mod decay;
 pub mod diversity;
+pub mod grain;
 #[cfg(test)]
 mod known;
 pub mod layers;
 mod measured;
 pub mod read;
+mod runs;
+mod search;
 pub mod space;
 pub mod spectrum;
 pub mod ssim;
@@ -23,7 +26,8 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
-pub use measured::{Measured, visible};
+pub use measured::Measured;
+pub use runs::Run;
 
 /// The single figures of a family by their names, in the order in which tables show them. What cannot be said of a
 /// pattern, such as the contrast of a pattern without links where it is a share of something, is `None`.
@@ -59,6 +63,9 @@ pub struct Measures {
     /// What the layers of tiles make of them.
     #[serde(flatten)]
     pub layers: layers::LayerMeasures,
+    /// How much of a grain the pattern has.
+    #[serde(flatten)]
+    pub grain: grain::Grain,
 }
 
 impl Measures {
@@ -79,6 +86,7 @@ impl Measures {
             correlogram,
             space: space::measure(measured),
             layers: layers::measure(measured),
+            grain: grain::measure(measured),
         }
     }
 
@@ -95,6 +103,7 @@ impl Measures {
         scalars.extend(self.spectrum.scalars());
         scalars.extend(self.space.scalars());
         scalars.extend(self.layers.scalars());
+        scalars.extend(self.grain.scalars());
         scalars
     }
 }

@@ -17,11 +17,14 @@ use crate::stage::{Graph, Layers};
 /// The greatest k, and the most layers.
 const MOST_LAYERS: f64 = 4.0;
 
+/// No page is a hundred kilometres wide: coordinates in millimetres lie within this.
+const FARTHEST: f64 = 1e8;
+
 /// Tiles and regions of a page that repeats are at most so many periods wide: more would overlap themselves for no end.
 const MOST_PERIODS: f64 = 4.0;
 
 /// One side of a page that repeats is at most so many times as long as the other.
-const MOST_OBLONG: f64 = 1000.0;
+const MOST_OBLONG: f64 = 100.0;
 
 /// What is wrong with a pattern, in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -45,7 +48,7 @@ struct File {
 struct Pattern {
     paint: Option<String>,
     bounds: Option<[f64; 4]>,
-    /// The region's rings, where it is not its bounds.
+    /// The region's rings, where it is more than a box.
     region: Option<Vec<Vec<[f64; 2]>>>,
     /// Width and height of a page that repeats.
     period: Option<[f64; 2]>,
@@ -123,7 +126,7 @@ fn measured(name: String, pattern: Pattern, most_tiles: u64) -> Result<Measured,
         triangles.push([index("triangles", a)?, index("triangles", b)?, index("triangles", c)?]);
     }
     let points = |list: &str, points: &[[f64; 2]]| -> Result<Vec<Point>, String> {
-        points.iter().map(|&[x, y]| Ok(Point::new(finite(list, x)?, finite(list, y)?))).collect()
+        points.iter().map(|&[x, y]| Ok(Point::new(coordinate(list, x)?, coordinate(list, y)?))).collect()
     };
     let sites = points("sites", &pattern.sites)?;
     let angles = pattern.angles.iter().map(|&angle| Ok(Angle::radians(finite("angles", angle)?).direction()));
@@ -167,6 +170,15 @@ fn measured(name: String, pattern: Pattern, most_tiles: u64) -> Result<Measured,
 
 fn finite(list: &str, value: f64) -> Result<f64, String> {
     if value.is_finite() { Ok(value) } else { Err(format!("`{list}` holds {value}, which is no number to measure by")) }
+}
+
+/// A coordinate in millimetres that may lie on a page.
+fn coordinate(list: &str, value: f64) -> Result<f64, String> {
+    if finite(list, value)?.abs() <= FARTHEST {
+        Ok(value)
+    } else {
+        Err(format!("`{list}` holds {value} mm, which is on no page"))
+    }
 }
 
 /// Whether sides of triangles are links, and no link is a side of more than two: what is said of triangulations then holds.
@@ -268,6 +280,7 @@ mod tests {
         assert!(with(r#""bounds":[1,1,0,0]"#).contains("upper left"));
         assert!(with(r#""period":[0,1]"#).contains("`period`"));
         assert!(with(r#""period":[1,1],"bounds":[0,0,9,9]"#).contains("4 periods"));
+        assert!(with(r#""bounds":[0,0,1e9,1]"#).contains("on no page"));
         let edges = |edges: &str| words(&format!(r#"{{"paints":[{{"sites":[[0,0]],"edges":{edges},"angles":[0]}}]}}"#));
         assert!(edges("[[0,0]]").contains("to itself"));
         assert!(edges("[[0,9]]").contains("names site 9"));

@@ -93,27 +93,24 @@ impl Grid {
     }
 
     /// Turns round every centre that a ring holds by the even-odd rule: those to the left of an edge, in the rows that it
-    /// spans, for every edge. Decisions are [`crate::geom::ring_contains`]'s to the last bit. Returns the rows that were
-    /// looked at.
+    /// spans, for every edge. Each centre is decided as [`crate::geom::ring_contains`] would; one on an edge lies on the same
+    /// side of it in whichever sense the edge is run along. Returns the rows that were looked at.
     fn toggle(&self, ring: impl Iterator<Item = Point> + Clone, mask: &mut Mask) -> std::ops::Range<usize> {
         let Some(last) = ring.clone().last() else { return 0..0 };
-        let mut touched = SIDE..0;
+        let (mut start, mut end) = (SIDE, 0);
         let mut a = last;
         for b in ring {
-            let (upper, lower) = if a.y <= b.y { (a.y, b.y) } else { (b.y, a.y) };
+            let (upper, lower) = if a.y <= b.y { (a, b) } else { (b, a) };
             // The rows from whose centre on each end lies above.
-            let rows = self.first(&self.ys, upper, self.bounds.min.y, self.bounds.height())
-                ..self.first(&self.ys, lower, self.bounds.min.y, self.bounds.height());
-            touched = touched.start.min(rows.start)..touched.end.max(rows.end);
-            let edge = b - a;
+            let rows = self.first(&self.ys, upper.y, self.bounds.min.y, self.bounds.height())
+                ..self.first(&self.ys, lower.y, self.bounds.min.y, self.bounds.height());
+            (start, end) = (start.min(rows.start), end.max(rows.end));
+            let edge = lower - upper;
             for row in rows {
                 let y = self.ys[row];
-                let is_left = |column: usize| {
-                    let side = edge.cross(Point::new(self.xs[column], y) - a);
-                    (side > 0.0) == (b.y > a.y)
-                };
+                let is_left = |column: usize| edge.cross(Point::new(self.xs[column], y) - upper) > 0.0;
                 // Where the edge crosses the row, but for rounding.
-                let x = a.x + edge.x * ((y - a.y) / edge.y);
+                let x = upper.x + edge.x * ((y - upper.y) / edge.y);
                 let mut columns = self.first(&self.xs, x, self.bounds.min.x, self.bounds.width());
                 while columns > 0 && !is_left(columns - 1) {
                     columns -= 1;
@@ -125,7 +122,7 @@ impl Grid {
             }
             a = b;
         }
-        touched.start.min(touched.end)..touched.end
+        start.min(end)..end
     }
 
     /// The first centre that is not below a value.

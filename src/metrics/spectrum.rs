@@ -52,3 +52,37 @@ pub fn measure(correlogram: &Correlogram) -> Spectrum {
     let peak = (0..FREQUENCIES).fold(0, |best, entry| if r_hat[entry] > r_hat[best] { entry } else { best });
     Spectrum { r_hat, r_hat_peak: Some(frequency(peak)) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(r: &[f64]) -> Spectrum {
+        measure(&Correlogram { r: r.to_vec(), pairs: vec![1; r.len()], ..Correlogram::default() })
+    }
+
+    #[test]
+    fn the_sum_is_over_both_sides() {
+        let r = [-0.36, 0.21, -0.11, 0.05, -0.02, 0.01, 0.4, 0.3, 0.2, 0.1, 0.05, 0.04, 0.03, 0.02, 0.01];
+        let spectrum = of(&r);
+        assert_eq!(spectrum.r_hat.len(), FREQUENCIES);
+        for (entry, value) in spectrum.r_hat.iter().enumerate() {
+            let mut sum = 0.0;
+            for k in -15i32..=15 {
+                let r = if k == 0 { 1.0 } else { r[k.unsigned_abs() as usize - 1] };
+                sum += r * libm::cos(frequency(entry) * f64::from(k));
+            }
+            assert!((value - sum).abs() < 1e-12, "{entry}: {value} {sum}");
+        }
+    }
+
+    #[test]
+    fn the_peak_tells_the_period() {
+        assert_eq!(of(&[-1.0, 1.0, -1.0]).r_hat_peak, Some(PI));
+        assert_eq!(of(&[1.0, 1.0, 1.0]).r_hat_peak, Some(0.0));
+        // Stripes that repeat after three tiles.
+        let thirds: Vec<f64> = (1..=15).map(|k| if k % 3 == 0 { 1.0 } else { -0.5 }).collect();
+        assert!((of(&thirds).r_hat_peak.unwrap() - 2.0 * PI / 3.0).abs() < 1e-12);
+        assert_eq!(of(&[]), Spectrum::default());
+    }
+}

@@ -358,3 +358,88 @@ fn dot(a: Pair, b: Pair) -> f64 {
 fn norm(a: Pair) -> f64 {
     dot(a, a).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
+    use nalgebra::storage::Owned;
+    use nalgebra::{Dyn, OMatrix, OVector, U2, Vector2};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Points near A exp(-t / b).
+    #[derive(Debug, Clone)]
+    struct Points {
+        parameters: Pair,
+        values: Vec<f64>,
+    }
+
+    impl Points {
+        fn rows(&self, [a, b]: Pair) -> Vec<Row> {
+            let row = |(t, value): (u32, &f64)| {
+                let share = libm::exp(-f64::from(t) / b);
+                (a * share - value, [share, a * share * f64::from(t) / (b * b)])
+            };
+            (1u32..).zip(&self.values).map(row).collect()
+        }
+
+        fn cost(&self, parameters: Pair) -> f64 {
+            Model::new(&self.rows(parameters)).cost
+        }
+    }
+
+    impl LeastSquaresProblem<f64, Dyn, U2> for Points {
+        type ParameterStorage = Owned<f64, U2>;
+        type ResidualStorage = Owned<f64, Dyn>;
+        type JacobianStorage = Owned<f64, Dyn, U2>;
+
+        fn set_params(&mut self, parameters: &Vector2<f64>) {
+            self.parameters = [parameters.x, parameters.y];
+        }
+
+        fn params(&self) -> Vector2<f64> {
+            Vector2::from(self.parameters)
+        }
+
+        fn residuals(&self) -> Option<OVector<f64, Dyn>> {
+            Some(OVector::from(self.rows(self.parameters).iter().map(|(f, _)| *f).collect::<Vec<f64>>()))
+        }
+
+        fn jacobian(&self) -> Option<OMatrix<f64, Dyn, U2>> {
+            let rows = self.rows(self.parameters);
+            Some(OMatrix::from_fn_generic(Dyn(rows.len()), U2, |row, column| rows[row].1[column]))
+        }
+    }
+
+    proptest! {
+        /// The library knows no bounds and stops later: within them both come to the same bottom.
+        #[test]
+        fn an_independent_method_finds_nothing_lower(
+            a in 0.2..1.5,
+            b in 0.5..8.0,
+            noise in proptest::collection::vec(-0.05..0.05, 8..16),
+        ) {
+            let law = |t: u32| a * libm::exp(-f64::from(t) / b);
+            let values: Vec<f64> = (1u32..).zip(&noise).map(|(t, noise)| law(t) + noise).collect();
+            let points = Points { parameters: [0.7, 2.0], values };
+            let bounds = Bounds { low: [0.0, 0.01], high: [2.0, 100.0] };
+            let ours = fit(points.parameters, bounds, |parameters| points.rows(parameters));
+            prop_assert!(bounds.hold(ours));
+            let (theirs, report) = LevenbergMarquardt::new().minimize(points.clone());
+            if report.termination.was_successful() && bounds.hold(theirs.parameters) {
+                let [ours, theirs] = [ours, theirs.parameters].map(|parameters| points.cost(parameters));
+                prop_assert!(ours <= theirs * (1.0 + 1e-5) + 1e-12, "{} {}", ours, theirs);
+            }
+        }
+
+        #[test]
+        fn the_best_of_a_line_lies_within_the_bounds(slope in -3.0..3.0f64, low in -1.0..0.5f64, width in 0.1..4.0f64) {
+            // Residuals x - slope and y - 2 are least at the nearest point of the bounds.
+            let bounds = Bounds { low: [low, 0.0], high: [low + width, 1.0] };
+            let [x, y] = fit([low + width / 2.0, 0.5], bounds, |[x, y]| vec![(x - slope, [1.0, 0.0]), (y - 2.0, [0.0, 1.0])]);
+            prop_assert!((x - slope.clamp(low, low + width)).abs() < 1e-4, "{} {}", x, slope);
+            prop_assert!((y - 1.0).abs() < 1e-4, "{}", y);
+        }
+    }
+}

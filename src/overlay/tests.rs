@@ -1,9 +1,8 @@
 use super::*;
 use crate::drawing::{Drawing, Page};
-use crate::geom::{Angle, ring_area};
+use crate::geom::ring_area;
 use crate::pass::fixture::{canvas, paint};
-use crate::pass::{link, place, turn};
-use crate::scene::{AngleRule, Depth, GridSize, Limits, Link, Placement, Repeat};
+use crate::scene::{AngleRule, Depth, GridSize, Limits, Placement, Repeat};
 use crate::{PaintStages, back};
 
 /// A grid of two by two tiles on four by four millimetres, turned by 0 and 90 degrees like a checkerboard.
@@ -83,6 +82,6 @@ fn cells_share_out_the_region() {
     let found = pattern(&paint, &canvas);
     assert!((covered(&found.cells) - 300.0).abs() < 1e-3);
     // Links are as short there as elsewhere.
-    let links: Vec<_> = found.measured.graph.edges().map(|edge| found.link(edge)).collect();
+    let links: Vec<[Point; 2]> = found.measured.graph.edges().map(|edge| found.link(edge)).collect();
     assert!(links.len() > 60 && links.iter().all(|[a, b]| a.distance(*b) < 6.0));
 }

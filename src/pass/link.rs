@@ -11,7 +11,7 @@ use std::borrow::Cow;
 
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
-use crate::geom::{Point, Rect, Vec2};
+use crate::geom::{Point, Rect, Vec2, hilbert};
 use crate::scene::Link;
 use crate::stage::{Graph, Sites};
 
@@ -172,7 +172,7 @@ fn triangulate(points: &[Point], sites: &[u32], corners: [u32; 3]) -> DelaunayTr
             let way = points[site as usize] - bounds.min;
             // A site's round is random: half of them come in the last, a quarter in the one before.
             let round = u64::from(scrambled(site).leading_zeros());
-            let place = hilbert((way.x * scale) as u16, (way.y * scale) as u16);
+            let place = hilbert::place((way.x * scale) as u16, (way.y * scale) as u16);
             ((64 - round) << 32 | u64::from(place), site)
         })
         .collect();
@@ -200,23 +200,6 @@ fn scrambled(mut x: u32) -> u32 {
     x ^= x >> 13;
     x = x.wrapping_mul(0xc2b2_ae35);
     x ^ x >> 16
-}
-
-/// How far along a Hilbert curve a cell of a grid of 2^16 a side lies.
-fn hilbert(mut x: u16, mut y: u16) -> u32 {
-    let mut distance = 0;
-    for bit in (0..16).rev() {
-        let (right, down) = (x >> bit & 1, y >> bit & 1);
-        distance = distance << 2 | u32::from((3 * right) ^ down);
-        // The curve within a quarter is turned so that its ends meet those of the next.
-        if down == 0 {
-            if right == 1 {
-                (x, y) = (!x, !y);
-            }
-            (x, y) = (y, x);
-        }
-    }
-    distance
 }
 
 /// A coordinate within the range that spade's exact predicates work in. No page comes near its ends.

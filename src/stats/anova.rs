@@ -46,7 +46,7 @@ pub struct AnovaRow {
 pub fn anova(design: &Factorial) -> Anova {
     let table = Cells::of(design).map(|cells| of_cells(design, &cells));
     table.flatten().unwrap_or_else(|| Anova {
-        note: Some("the design has too many cells for an analysis of variance; leave out a factor".to_owned()),
+        note: Some("the design has too many cells for an analysis of variance: leave out factors or levels".to_owned()),
         ..Anova::default()
     })
 }
@@ -151,5 +151,123 @@ impl Judge {
     /// The share of the total.
     fn of_total(&self, squares: f64) -> Option<f64> {
         (self.total > 0.0).then(|| squares / self.total)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::factorial::tests::design;
+    use super::*;
+
+    /// Two factors of two levels, with the same values in each cell moved by what the cell adds.
+    fn two_by_two(values: &[f64], added: [f64; 4]) -> Factorial {
+        let levels: [&[usize]; 4] = [&[0, 0], &[0, 1], &[1, 0], &[1, 1]];
+        let rows: Vec<(&[usize], f64)> =
+            levels.iter().zip(added).flat_map(|(l, added)| values.iter().map(move |v| (*l, v + added))).collect();
+        design(&[2, 2], &rows)
+    }
+
+    fn note(design: &Factorial) -> String {
+        anova(design).note.unwrap_or_default()
+    }
+
+    #[test]
+    fn one_run_a_cell_has_shares_but_no_test() {
+        let found = anova(&two_by_two(&[0.0], [0.0, 1.0, 2.0, 5.0]));
+        let shares: Vec<f64> = found.rows.iter().map(|row| row.eta2.unwrap()).collect();
+        assert_eq!(shares, [9.0 / 14.0, 4.0 / 14.0, 1.0 / 14.0, 0.0]);
+        assert!(found.rows.iter().all(|row| row.f.is_none() && row.p.is_none() && row.omega2.is_none()));
+        assert_eq!(
+            found.note.as_deref(),
+            Some("no cell holds more than one run: there is no residual to test against")
+        );
+    }
+
+    #[test]
+    fn a_constant_measure_has_nothing_to_explain() {
+        let found = anova(&two_by_two(&[0.1, 0.1], [0.0; 4]));
+        assert!(found.rows.iter().all(|row| row.ss == 0.0 && row.eta2.is_none() && row.f.is_none()));
+        assert_eq!(found.rows.iter().map(|row| row.df).collect::<Vec<_>>(), [1, 1, 1, 4]);
+        assert_eq!(found.note.as_deref(), Some("every run measures 0.1: there is no variance to explain"));
+    }
+
+    #[test]
+    fn cells_without_spread_are_not_tested_against() {
+        let found = anova(&two_by_two(&[0.7, 0.7 + f64::EPSILON], [0.0, 1.0, 0.0, 1.0]));
+        assert!((found.rows[1].eta2.unwrap() - 1.0).abs() < 1e-12);
+        assert!(found.rows.iter().all(|row| row.f.is_none()));
+        assert_eq!(
+            found.note.as_deref(),
+            Some("the runs of a cell do not differ: there is no residual to test against")
+        );
+    }
+
+    #[test]
+    fn factors_that_do_not_vary_are_named() {
+        let found = anova(&design(&[1, 2], &[(&[0, 0], 1.0), (&[0, 0], 2.0), (&[0, 1], 4.0), (&[0, 1], 6.0)]));
+        let rows: Vec<(&str, usize)> = found.rows.iter().map(|row| (&*row.source, row.df)).collect();
+        assert_eq!(rows, [("a", 0), ("b", 1), ("residual", 2)]);
+        assert_eq!((found.rows[0].f, found.rows[0].eta2), (None, Some(0.0)));
+        assert_eq!(found.note.as_deref(), Some("a has one level only and explains nothing"));
+        assert_eq!(note(&design(&[], &[(&[], 1.0), (&[], 2.0)])), "there is no factor to compare");
+        assert_eq!(note(&design(&[2], &[])), "nothing was measured");
+    }
+
+    #[test]
+    fn a_design_that_takes_too_long_is_refused() {
+        let levels: Vec<[usize; 2]> = (0..200_000).map(|i| [i % 447, i / 447]).collect();
+        let rows: Vec<(&[usize], f64)> = levels.iter().map(|levels| (&levels[..], levels[0] as f64)).collect();
+        assert!(note(&design(&[447, 448], &rows)).contains("too many cells"));
+    }
+
+    /// Balanced designs of two or three factors.
+    fn balanced() -> impl Strategy<Value = Factorial> {
+        (prop::collection::vec(2..4_usize, 2..4), 2..4_usize).prop_flat_map(|(shape, count)| {
+            let cells: usize = shape.iter().product();
+            prop::collection::vec(-1.0..1.0_f64, cells * count).prop_map(move |values| {
+                let levels: Vec<Vec<usize>> = (0..values.len())
+                    .map(|i| {
+                        let mut cell = i / count;
+                        let level = |levels: &usize| {
+                            let level = cell % levels;
+                            cell /= levels;
+                            level
+                        };
+                        shape.iter().map(level).collect()
+                    })
+                    .collect();
+                let rows: Vec<(&[usize], f64)> = levels.iter().map(Vec::as_slice).zip(values).collect();
+                design(&shape, &rows)
+            })
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn in_a_balanced_design_the_sums_add_up(design in balanced()) {
+            let found = anova(&design);
+            prop_assert!((found.rows.iter().map(|row| row.ss).sum::<f64>() - found.total).abs() < 1e-10);
+            let df: usize = found.rows.iter().map(|row| row.df).sum();
+            prop_assert_eq!(df, design.observations.len() - 1);
+        }
+
+        #[test]
+        fn neither_place_nor_scale_changes_f(
+            design in balanced(), scale in 0.1..10.0_f64, offset in -10.0..10.0_f64, lost in 0..7_usize
+        ) {
+            // One value less makes the design unbalanced.
+            let mut plain = design;
+            plain.observations.remove(lost);
+            let mut moved = plain.clone();
+            moved.observations.iter_mut().for_each(|one| one.value = one.value * scale + offset);
+            for (a, b) in anova(&plain).rows.iter().zip(&anova(&moved).rows) {
+                prop_assert!((a.ss * scale * scale - b.ss).abs() < 1e-9);
+                if let (Some(a), Some(b)) = (a.f, b.f) {
+                    prop_assert!((a - b).abs() <= 1e-8 * (1.0 + a));
+                }
+            }
+        }
     }
 }

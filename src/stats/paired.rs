@@ -96,3 +96,42 @@ fn differences(a: &[f64], b: &[f64]) -> (Vec<f64>, f64) {
     let scale = pairs().fold(0.0_f64, |most, (a, b)| most.max(a.abs()).max(b.abs()));
     (pairs().map(|(a, b)| a - b).collect(), scale)
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn what_does_not_differ_is_not_tested() {
+        assert_eq!(paired_t(&[1.1, 2.1, 3.1], &[0.1, 1.1, 2.1]), None);
+        assert_eq!(paired_t(&[1.0], &[0.0]), None);
+        assert_eq!(paired_t(&[], &[]), None);
+        assert_eq!(wilcoxon_signed_rank(&[1.0, 2.0], &[1.0, 2.0]), None);
+        assert_eq!(wilcoxon_signed_rank(&[], &[]), None);
+    }
+
+    #[test]
+    fn pairs_without_a_value_are_passed_over() {
+        let (a, b) = ([1.0, 5.0, 3.0, f64::NAN, 2.0], [0.0, 2.0, 1.0, 4.0]);
+        assert_eq!(paired_t(&a, &b), paired_t(&a[..3], &b[..3]));
+        assert_eq!(paired_t(&a, &b).unwrap().n, 3);
+        assert_eq!(wilcoxon_signed_rank(&a, &b).unwrap().plus, 6.0);
+    }
+
+    proptest! {
+        #[test]
+        fn the_two_sides_add_up(
+            pairs in prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64), 3..30)
+        ) {
+            let (a, b): (Vec<f64>, Vec<f64>) = pairs.into_iter().unzip();
+            let (here, there) = (paired_t(&a, &b).unwrap(), paired_t(&b, &a).unwrap());
+            prop_assert!((here.p_greater + there.p_greater - 1.0).abs() < 1e-12);
+            prop_assert!((here.p - there.p).abs() < 1e-12);
+            let (here, there) = (wilcoxon_signed_rank(&a, &b).unwrap(), wilcoxon_signed_rank(&b, &a).unwrap());
+            prop_assert!((here.p_greater + there.p_greater - 1.0).abs() < 1e-12);
+            prop_assert_eq!((here.plus, here.minus), (there.minus, there.plus));
+        }
+    }
+}

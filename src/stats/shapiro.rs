@@ -123,3 +123,29 @@ fn upper_quantile(p: f64) -> f64 {
 fn polynomial(coefficients: &[f64], x: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * x + coefficient)
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn too_few_and_too_equal_values_are_not_tested() {
+        assert_eq!(shapiro_wilk(&[1.0, 2.0]), None);
+        assert_eq!(shapiro_wilk(&[0.1; 9]), None);
+        assert_eq!(shapiro_wilk(&[]), None);
+    }
+
+    proptest! {
+        #[test]
+        fn neither_place_nor_scale_matters(
+            values in prop::collection::vec(-1.0..1.0_f64, 3..60), scale in 0.01..100.0_f64, offset in -10.0..10.0_f64
+        ) {
+            let found = shapiro_wilk(&values).unwrap();
+            prop_assert!((0.0..=1.0).contains(&found.w) && (0.0..=1.0).contains(&found.p));
+            let moved: Vec<f64> = values.iter().map(|value| value * scale + offset).collect();
+            prop_assert!((shapiro_wilk(&moved).unwrap().w - found.w).abs() < 1e-9);
+        }
+    }
+}

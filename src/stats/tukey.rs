@@ -63,3 +63,54 @@ pub fn tukey(groups: &[(String, Vec<f64>)], alpha: f64) -> Vec<TukeyRow> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn groups(values: &[&[f64]]) -> Vec<(String, Vec<f64>)> {
+        values.iter().enumerate().map(|(i, values)| (i.to_string(), values.to_vec())).collect()
+    }
+
+    #[test]
+    fn without_error_only_differences_are_told() {
+        for values in [&[&[1.0][..], &[3.0]], &[&[0.1, 0.1, 0.1], &[2.1, 2.1]]] {
+            let rows = tukey(&groups(values), 0.05);
+            assert_eq!(rows.len(), 1);
+            assert_eq!(rows[0].meandiff, 2.0);
+            assert_eq!((rows[0].p_adj, rows[0].lower, rows[0].upper, rows[0].reject), (None, None, None, None));
+        }
+    }
+
+    #[test]
+    fn groups_without_values_are_left_out() {
+        let rows = tukey(&groups(&[&[1.0, 2.0], &[], &[2.0, 3.5]]), 0.05);
+        assert_eq!(rows.iter().map(|row| (&*row.group1, &*row.group2)).collect::<Vec<_>>(), [("0", "2")]);
+        assert!(tukey(&groups(&[&[1.0, 2.0]]), 0.05).is_empty());
+        assert!(tukey(&[], 0.05).is_empty());
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(16))]
+
+        #[test]
+        fn intervals_agree_with_p_and_greater_differences_are_rarer(
+            values in prop::collection::vec(prop::collection::vec(-1.0..1.0_f64, 3..8), 2..5)
+        ) {
+            let values: Vec<&[f64]> = values.iter().map(Vec::as_slice).collect();
+            let rows = tukey(&groups(&values), 0.05);
+            for row in &rows {
+                let (p, lower, upper) = (row.p_adj.unwrap(), row.lower.unwrap(), row.upper.unwrap());
+                prop_assert_eq!(row.reject, Some(p < 0.05));
+                prop_assert_eq!(row.reject, Some(lower > 0.0 || upper < 0.0));
+                for other in &rows {
+                    let width = |row: &TukeyRow| row.upper.unwrap() - row.lower.unwrap();
+                    let nearer = other.meandiff.abs() / width(other) <= row.meandiff.abs() / width(row);
+                    prop_assert!(!nearer || other.p_adj.unwrap() >= p * (1.0 - 1e-9));
+                }
+            }
+        }
+    }
+}

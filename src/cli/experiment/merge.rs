@@ -8,10 +8,9 @@ use clap::Args;
 
 use crate::cli::files::plain;
 use crate::cli::{Ended, report};
-use crate::experiment::{Done, Journal, Recipe, Shard};
-use crate::lower::lower;
+use crate::experiment::{Done, Journal, Recipe, Request, Shard, prepare};
 
-use super::{keep, output, plan};
+use super::{keep, output};
 
 #[derive(Debug, Args)]
 pub(super) struct MergeArgs {
@@ -35,11 +34,10 @@ pub(super) fn run(arguments: &MergeArgs) -> Ended {
         Ok(whole) => whole,
         Err(words) => return said(&words, Ended::Usage),
     };
-    let config = recipe.config(&[], None);
-    let mut lowered = lower(&recipe.scene, &recipe, &config.lower);
-    let planned = plan(&mut lowered, Some(&recipe.experiment), recipe.seeds, &config);
-    let ended = report::diagnostics(&lowered.diagnostics, &lowered.sources);
-    let Some(plan) = planned else { return ended };
+    let request = Request { name: Some(recipe.experiment.clone()), seeds: recipe.seeds };
+    let prepared = prepare(&recipe.scene, &recipe, &recipe.config(&[], None), &request);
+    let ended = report::diagnostics(&prepared.lowered.diagnostics, &prepared.lowered.sources);
+    let Some((_, plan)) = prepared.ready else { return ended };
     if let Err(words) = complete(&done, plan.runs(), of) {
         return said(&words, Ended::Usage);
     }

