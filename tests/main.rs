@@ -1,6 +1,7 @@
 //! The tests of the whole program: scenes in, pictures and diagnostics out.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod angles;
 mod arrows;
 mod bad_input;
 mod cases;

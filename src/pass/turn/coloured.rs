@@ -275,3 +275,108 @@ impl<'a> Palette<'a> {
         }
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::geom::{Length, Period, Point};
+    use crate::pass::fixture::{canvas, paint};
+    use crate::pass::link::link;
+    use crate::pass::place::place;
+    use crate::scene::{AngleRule, Canvas, GridSize, Limits, Link, Placement, Repeat, Shape};
+
+    const KEY: Key<'_> = Key { seed: 3, name: "paint", purpose: "angle" };
+
+    fn linked(canvas: &Canvas, placement: Placement, links: Link) -> Graph {
+        let mut paint = paint(canvas, placement, AngleRule::Random);
+        paint.tone.link = links;
+        if links == Link::Edges {
+            paint.tone.shape = Shape::Cell { inset: Length::ZERO };
+        }
+        link(&place(&paint, canvas, &Limits::default()).unwrap(), links)
+    }
+
+    fn alike(graph: &Graph, colours: &[u32]) -> usize {
+        graph.edges().filter(|&[a, b]| colours[a as usize] == colours[b as usize]).count()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+
+        #[test]
+        fn four_colours_suffice_for_points_anywhere(
+            points in proptest::collection::vec((0u16..1000, 0u16..1000), 0..400),
+            lattice in 1u16..40,
+            most in 4u32..=12,
+        ) {
+            // Coarse lattices make many ties and hubs.
+            let point = |(x, y): (u16, u16)| {
+                Point::new(f64::from(x - x % lattice) / 20.0, f64::from(y - y % lattice) / 20.0)
+            };
+            let points = points.into_iter().map(point).collect();
+            let graph = linked(&canvas(50.0, 50.0), Placement::Points(points), Link::Delaunay);
+            for count in [4, most] {
+                let colours = colours(&graph, count, &KEY);
+                prop_assert!(colours.iter().all(|&colour| colour < count));
+                prop_assert_eq!(alike(&graph, &colours), 0);
+            }
+        }
+    }
+
+    #[test]
+    fn lattices_take_as_few_as_they_can() {
+        let canvas = canvas(60.0, 50.0);
+        let edge = Length::mm(1.3);
+        let cells = || Placement::Grid(GridSize::Cells { columns: 31, rows: 24 });
+        let cases = [
+            (Placement::Hex { spacing: edge }, Link::Delaunay, 3),
+            (cells(), Link::Edges, 2),
+            (Placement::Triangles { edge }, Link::Edges, 2),
+            (Placement::Penrose { edge }, Link::Edges, 3),
+            (Placement::Pinwheel { edge }, Link::Edges, 4),
+            (cells(), Link::Delaunay, 4),
+        ];
+        for (placement, links, enough) in cases {
+            let graph = linked(&canvas, placement, links);
+            let colours = colours(&graph, enough, &KEY);
+            assert_eq!(alike(&graph, &colours), 0, "{enough} colours");
+        }
+    }
+
+    #[test]
+    fn colours_are_used_evenly() {
+        let uniform = Placement::Poisson { radius: Length::mm(0.5), tries: 30, density: None };
+        let graph = linked(&canvas(40.0, 40.0), uniform, Link::Delaunay);
+        let colours = colours(&graph, 4, &KEY);
+        assert_eq!(alike(&graph, &colours), 0);
+        for colour in 0..4 {
+            let share = colours.iter().filter(|&&c| c == colour).count() as f64 / graph.len() as f64;
+            assert!((share - 0.25).abs() < 0.01, "{share}");
+        }
+    }
+
+    #[test]
+    fn a_torus_is_coloured_too() {
+        let canvas = Canvas { repeat: Repeat::Both, ..canvas(30.0, 20.0) };
+        let placement = Placement::Poisson { radius: Length::mm(0.8), tries: 30, density: None };
+        let graph = linked(&canvas, placement, Link::Delaunay);
+        assert_eq!(canvas.period(), Some(Period::new(canvas.width, canvas.height)));
+        assert_eq!(alike(&graph, &colours(&graph, 4, &KEY)), 0);
+    }
+
+    #[test]
+    fn what_cannot_be_coloured_stays_alike_in_few_places() {
+        // Seven sites of which every two are neighbours, as they can be on a torus.
+        let edges: Vec<[u32; 2]> = (0..7).flat_map(|a| (a + 1..7).map(move |b| [a, b])).collect();
+        let graph = Graph::new(7, &edges, Vec::new());
+        assert_eq!(alike(&graph, &colours(&graph, 7, &KEY)), 0);
+        assert_eq!(alike(&graph, &colours(&graph, 6, &KEY)), 1);
+        let poisson = Placement::Poisson { radius: Length::mm(1.0), tries: 30, density: None };
+        let graph = linked(&canvas(20.0, 20.0), poisson, Link::Delaunay);
+        let alike = alike(&graph, &colours(&graph, 3, &KEY)) as f64;
+        assert!(alike < graph.edges().count() as f64 * 0.12);
+    }
+}

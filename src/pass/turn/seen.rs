@@ -34,6 +34,14 @@ impl Offsets {
         (0..4).filter(move |offset| self.0 >> offset & 1 == 1)
     }
 
+    /// The greatest that such a distance can be: half the widest gap between the directions of one of the tiles.
+    pub(super) fn greatest(self) -> Angle {
+        let eighths: Vec<u32> = self.eighths().collect();
+        let across = eighths.first().zip(eighths.last()).map_or(4, |(first, last)| 4 - last + first);
+        let widest = eighths.windows(2).map(|pair| pair[1] - pair[0]).fold(across, u32::max);
+        Angle::RIGHT * (f64::from(widest) / 4.0)
+    }
+
     /// The least RP1 distance between any layers of two tiles whose first layers lie so far apart; a right angle where
     /// there are none.
     pub(super) fn distance(self, apart: Angle) -> Angle {
@@ -52,6 +60,10 @@ mod tests {
         for (m, n) in (0..=4).flat_map(|m| (0..=4).map(move |n| (m, n))) {
             let offsets = Offsets::between(m, n);
             assert_eq!(offsets.number() == 0, m == 0 || n == 0);
+            let distances = (0..180).map(|degrees| offsets.distance(Angle::degrees(f64::from(degrees))));
+            // 22.5 degrees lie between two whole ones.
+            let most = distances.map(Angle::to_radians).fold(0.0, f64::max);
+            assert!((offsets.greatest().to_radians() - most).abs() < Angle::degrees(0.51).to_radians());
             for degrees in 0..180 {
                 let [a, b] = [Angle::degrees(f64::from(degrees)), Angle::degrees(17.0)];
                 let Some(least) = a.layered_distance(m, b, n) else { continue };

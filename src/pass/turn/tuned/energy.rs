@@ -3,13 +3,13 @@
 //! It is a sum over patches, and every part of it is measured per tile, so that a pattern of any size is judged as the
 //! small ones are, and so that a move can be judged where it is made:
 //!
-//! - contrast: over the links, 2/pi times the distance of the two tiles counts against the cost, and what it falls short
-//!   of the least contrast counts many times for it;
+//! - contrast: over the links, the distance of the two tiles as a share of the greatest that their layers can have counts
+//!   against the cost, and what it falls short of the least contrast counts several times for it;
 //! - diversity: chi squared of the counts in twelve equal bins, averaged over all places where bins can start. It is kept
 //!   as a sum over pairs of tiles of a triangle as wide as a bin, which is the same thing;
 //! - grain: the squares of R2 and R3, the mean cosines of twice the angles between tiles two and three links apart.
 
-use std::f64::consts::{FRAC_2_PI, PI};
+use std::f64::consts::PI;
 
 use crate::geom::Angle;
 use crate::scene::Tuned;
@@ -39,7 +39,7 @@ const GRAIN: f64 = 2.0;
 pub(super) struct Costs {
     /// Steps in half a turn.
     pub(super) candidates: u32,
-    /// For each set of offsets that occurs, the contrast of a link by the step of one end, less that of the other, plus
+    /// For each set of offsets that occurs, the contrast of a link, 0 to 1, by the step of one end, less that of the other, plus
     /// `candidates`; below twice `candidates`.
     contrasts: Vec<Vec<f64>>,
     contrast: f64,
@@ -63,7 +63,8 @@ impl Costs {
         for &offsets in occurring {
             let table = &mut contrasts[offsets.number()];
             if table.is_empty() {
-                table.extend((0..2 * candidates).map(|step| FRAC_2_PI * offsets.distance(angle(step)).to_radians()));
+                let greatest = offsets.greatest().to_radians();
+                table.extend((0..2 * candidates).map(|step| offsets.distance(angle(step)).to_radians() / greatest));
             }
         }
         let unit = |step: u32| {
@@ -148,6 +149,11 @@ impl Crowd {
         for (near, height) in self.near.iter_mut().zip(triangle(bin)) {
             *near += height;
         }
+    }
+
+    /// How many tiles lie near a bin, the nearer the more they count.
+    pub(super) fn near(&self, bin: u8) -> f32 {
+        self.near[usize::from(bin)]
     }
 
     /// Takes a tile from one bin to another.

@@ -7,7 +7,7 @@
 //! thread, and each tile draws its chances from a stream of its own.
 //!
 //! Costs are looked up by whole steps, and what lies two and three links away is summed once for all offers, so that a
-//! visit takes a bounded time; memory is about 200 bytes a tile.
+//! visit takes a bounded time; memory is about 300 bytes a tile.
 
 mod energy;
 mod links;
@@ -71,6 +71,12 @@ pub(super) fn tune(
             }
         }
         round = rounds.end;
+    }
+    // Too few rounds end while it is still hot.
+    let first: Vec<u16> = patches.order.iter().map(|&site| start[site as usize] as u16).collect();
+    let link_costs = costs.links(1.0);
+    if stir.cost(&first, &link_costs) < stir.cost(&steps, &link_costs) {
+        steps = first;
     }
     let mut out = vec![0; steps.len()];
     for (&site, &step) in patches.order.iter().zip(&steps) {
@@ -179,6 +185,35 @@ impl Stir<'_> {
         own.steps
     }
 
+    /// What a pattern costs when all is cold: the sum over patches.
+    fn cost(&self, steps: &[u16], links: &LinkCosts) -> f64 {
+        let costs = self.costs;
+        let candidates = costs.candidates as usize;
+        let patch = |bounds: &[u32]| {
+            let sites = bounds[0] as usize..bounds[1] as usize;
+            let tiles = sites.len() as f64;
+            let mut crowd = Crowd::NONE;
+            let mut linked = 0.0;
+            for site in sites.clone() {
+                crowd.add(costs.bins[usize::from(steps[site])]);
+                let offsets = &self.links.offsets[self.links.near.range(site)];
+                for (&other, &offsets) in self.links.near.of(site).iter().zip(offsets) {
+                    let apart = usize::from(steps[site]) + candidates - usize::from(steps[other as usize]);
+                    // Each link is met from both ends.
+                    linked += f64::from(links.of(offsets)[apart]) / 2.0;
+                }
+            }
+            let pairs: f64 =
+                sites.clone().map(|site| f64::from(crowd.near(costs.bins[usize::from(steps[site])]))).sum();
+            let away = [&self.links.second, &self.links.third].map(|lists| Away::new(lists, steps, &sites, costs));
+            let repeated: f64 = away.iter().map(|away| away.mean() * away.mean()).sum();
+            linked + costs.diversity * 12.0 * pairs / tiles + costs.grain * tiles * repeated
+        };
+        // Collected first, so that the order of the sum does not depend on threads.
+        let patches: Vec<f64> = self.patches.starts.par_windows(2).map(patch).collect();
+        patches.iter().sum()
+    }
+
     /// How hot it is in a round, and how far near offers lie.
     fn schedule(&self, round: u32) -> (f64, f64) {
         let part = f64::from(round) / f64::from(self.rule.rounds);
@@ -236,6 +271,11 @@ impl Away {
         away
     }
 
+    /// The mean cosine.
+    fn mean(&self) -> f64 {
+        if self.pairs == 0.0 { 0.0 } else { self.sum / self.pairs }
+    }
+
     /// By how much the sum changes when a tile's unit vector does. Pairs count from both ends, though one of them may
     /// lie in another patch: so does its own sum change.
     fn changes(&self, place: usize, [dx, dy]: [f32; 2]) -> f64 {
@@ -256,5 +296,104 @@ impl Away {
                 *y += dy;
             }
         }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::{bfs, directions};
+    use super::*;
+    use crate::pass::fixture::{canvas, paint};
+    use crate::pass::link::link;
+    use crate::pass::place::place;
+    use crate::scene::{AngleRule, Limits, Link, Placement};
+    use crate::stage::Sites;
+
+    const KEY: Key<'_> = Key { seed: 3, name: "paint", purpose: "tune" };
+
+    fn linked(count: usize, seed: u64) -> (Sites, Graph) {
+        let canvas = canvas(50.0, 40.0);
+        let key = Key { seed, name: "points", purpose: "test" };
+        let mut stream = key.stream();
+        let points = (0..count).map(|_| Point::new(stream.unit() * 50.0, stream.unit() * 40.0)).collect();
+        let paint = paint(&canvas, Placement::Points(points), AngleRule::Random);
+        let sites = place(&paint, &canvas, &Limits::default()).unwrap();
+        let graph = link(&sites, Link::Delaunay);
+        (sites, graph)
+    }
+
+    fn cost(graph: &Graph, sites: &Sites, seen: &[u8], rule: &Tuned, steps: &[u32]) -> f64 {
+        let patches = Patches::new(&sites.points);
+        let links = Links::new(graph, &patches, seen);
+        let costs = Costs::new(rule, &links.offsets);
+        let steps: Vec<u16> = patches.order.iter().map(|&site| steps[site as usize] as u16).collect();
+        Stir { rule, patches: &patches, links: &links, costs: &costs, key: &KEY }.cost(&steps, &costs.links(1.0))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+
+        #[test]
+        fn tuning_never_costs_more_and_knows_no_threads(
+            count in 0usize..600,
+            seed: u64,
+            weights in [0.0..3.0f64, 0.0..3.0, 0.0..3.0],
+            rounds in 0u32..25,
+            candidates in 2u32..400,
+            layers in 0u8..=4,
+        ) {
+            let (sites, graph) = linked(count, seed);
+            let seen: Vec<u8> = (0..count).map(|site| if site % 3 == 0 { layers } else { 1 }).collect();
+            let [contrast, diversity, grain] = weights;
+            let rule = Tuned { contrast, diversity, grain, rounds, candidates, ..Tuned::default() };
+            let start = bfs::turn(&graph, candidates, &seen, &KEY);
+            let on = |threads| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                pool.install(|| tune(&graph, &sites.points, &seen, &rule, &start, &KEY))
+            };
+            let steps = on(1);
+            prop_assert_eq!(&steps, &on(2));
+            prop_assert!(steps.iter().all(|&step| step < candidates));
+            let [before, after] = [&start, &steps].map(|steps| cost(&graph, &sites, &seen, &rule, steps));
+            prop_assert!(after <= before, "{} {}", after, before);
+            for angle in directions(steps, candidates, candidates - 1) {
+                let step = angle.to_radians() / std::f64::consts::PI * f64::from(candidates);
+                prop_assert!((step - step.round()).abs() < 1e-9 && (0.0..f64::from(candidates)).contains(&step));
+            }
+        }
+    }
+
+    #[test]
+    fn patches_of_one_class_share_nothing() {
+        let (sites, graph) = linked(3000, 1);
+        let patches = Patches::new(&sites.points);
+        let links = Links::new(&graph, &patches, &vec![1; 3000]);
+        let around = links.around(&patches);
+        let sizes: Vec<u32> = patches.starts.windows(2).map(|bounds| bounds[1] - bounds[0]).collect();
+        assert!(sizes.iter().all(|size| (100..=128).contains(size)), "{sizes:?}");
+        let mut order = patches.order.clone();
+        order.sort_unstable();
+        assert!(order.into_iter().eq(0..3000));
+        for class in classes(&around) {
+            for &a in &class {
+                assert!(class.iter().all(|b| *b == a || !around[a as usize].contains(b)));
+            }
+        }
+    }
+
+    #[test]
+    fn a_hub_takes_no_longer() {
+        // Everything is two links away from everything.
+        let edges: Vec<[u32; 2]> = (1..20_000).map(|site| [0, site]).collect();
+        let graph = Graph::new(20_000, &edges, Vec::new());
+        let points: Vec<Point> = (0..20_000).map(|i| Point::new(f64::from(i % 7), f64::from(i / 7))).collect();
+        let rule = Tuned { rounds: 10, ..Tuned::default() };
+        let seen = vec![1; 20_000];
+        let start = bfs::turn(&graph, 360, &seen, &KEY);
+        let steps = tune(&graph, &points, &seen, &rule, &start, &KEY);
+        assert!(steps[1..].iter().all(|&step| step != steps[0]));
     }
 }
