@@ -17,8 +17,8 @@ use crate::stats::{percentile, summary};
 /// Tiles below which a pattern is too small to have grain.
 const FEWEST: usize = 10;
 
-/// The share of the links that may part by less.
-const FIFTH: f64 = 0.05;
+/// Of a hundred links so many may part by less.
+const FIFTH: f64 = 5.0;
 
 /// Three tiles that touch can part by at most two thirds each; neighbours that part by half of that, 30 degrees, are
 /// told from each other at a glance.
