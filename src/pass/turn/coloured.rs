@@ -332,7 +332,6 @@ mod tests {
         let edge = Length::mm(1.3);
         let cells = || Placement::Grid(GridSize::Cells { columns: 31, rows: 24 });
         let cases = [
-            (Placement::Hex { spacing: edge }, Link::Delaunay, 3),
             (cells(), Link::Edges, 2),
             (Placement::Triangles { edge }, Link::Edges, 2),
             (Placement::Penrose { edge }, Link::Edges, 3),
@@ -344,6 +343,21 @@ mod tests {
             let colours = colours(&graph, enough, &KEY);
             assert_eq!(alike(&graph, &colours), 0, "{enough} colours");
         }
+    }
+
+    #[test]
+    fn hexagons_take_three_but_where_rows_end() {
+        let spacing = Length::mm(1.3);
+        let paint = paint(&canvas(60.0, 50.0), Placement::Hex { spacing }, AngleRule::Random);
+        let sites = place(&paint, &canvas(60.0, 50.0), &Limits::default()).unwrap();
+        let graph = link(&sites, Link::Delaunay);
+        let colours = colours(&graph, 3, &KEY);
+        let length = |[a, b]: [u32; 2]| (sites.points[b as usize] - sites.points[a as usize]).length();
+        let is_alike = |&[a, b]: &[u32; 2]| colours[a as usize] == colours[b as usize];
+        // Slivers along the outline join every second row, whose ends are of one colour.
+        let (long, short): (Vec<_>, Vec<_>) = graph.edges().partition(|&edge| length(edge) > 1.4 * spacing.to_mm());
+        assert!(!long.is_empty() && long.iter().all(is_alike));
+        assert!(!short.iter().any(is_alike));
     }
 
     #[test]
