@@ -88,7 +88,7 @@ fn layers_and_the_seed_s_name_change_nothing() {
 #[test]
 fn any_region_has_a_grain_and_a_page_that_repeats() {
     let square = Page::square(150);
-    let ring = "difference(circle(center: (30mm, 30mm), radius: 30mm), circle(center: (30mm, 30mm), radius: 12mm))";
+    let ring = "circle(center: (30mm, 30mm), radius: 30mm) - circle(center: (30mm, 30mm), radius: 12mm)";
     let pages = [
         Page { region: ring, bleed: 1.0, ..square },
         Page { size: [240.0, 15.0], ..square },
