@@ -256,9 +256,9 @@ impl PaintStages {
         let graph = link::link(&sites, paint.tone.link);
         observer.begin(Step::Turn, &paint.name);
         let angles = turn::turn(paint, &sites, &graph);
-        warnings.extend(turn::alike(paint, &graph, &angles));
         observer.begin(Step::Cut, &paint.name);
         let tiles = cut::cut(paint, canvas, &sites, &graph, &angles, warnings);
+        warnings.extend(turn::alike(paint, &graph, &angles, &tiles));
         Ok(Self { sites, graph, angles, tiles })
     }
 

@@ -15,7 +15,17 @@ use kakeami::lower::LowerConfig;
 use kakeami::{Config, compile};
 
 /// The documents with scenes in them.
-const DOCUMENTS: [&str; 4] = ["README.md", "docs/language.md", "docs/gallery.md", "docs/grain.md"];
+const DOCUMENTS: [&str; 9] = [
+    "README.md",
+    "docs/language.md",
+    "docs/gallery.md",
+    "docs/angles.md",
+    "docs/experiments.md",
+    "docs/grain.md",
+    "docs/metrics.md",
+    "docs/paper.md",
+    "docs/statistics.md",
+];
 
 fn repository() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))

@@ -85,6 +85,11 @@ pub(super) fn description(measure: &str) -> &'static str {
         "density_contrast" => "mean difference of ink between neighbours",
         "tile_isotropy" => "how evenly a tile's strokes point everywhere",
         "grain" => "contrast everywhere, many directions, even but not regular",
+        "grain_contrast" => "its factor: neighbours part everywhere",
+        "grain_directions" => "its factor: there are many directions wherever one looks",
+        "grain_evenness" => "its factor: tiles lie evenly",
+        "grain_disorder" => "its factor: tiles stand in no rows",
+        "grain_looseness" => "its factor: cells are not all of one size",
         measure if distance(measure).is_some() => "correlation of directions at this distance along the links",
         _ => "",
     }
@@ -94,9 +99,10 @@ pub(super) fn description(measure: &str) -> &'static str {
 pub(super) fn places(means: &[f64], sds: &[f64]) -> usize {
     let mut sds: Vec<f64> = sds.iter().copied().filter(|&sd| sd > 1e-12).collect();
     sds.sort_by(f64::total_cmp);
-    if let Some(middle) = sds.get(sds.len() / 2) {
-        // Two digits of the middle spread: one condition that hardly spreads asks for no more digits of all others.
-        return (1.0 - libm::floor(libm::log10(*middle))).clamp(0.0, MOST_PLACES as f64) as usize;
+    if let Some(small) = sds.get(sds.len().saturating_sub(1) / 3) {
+        // Two digits of a small spread, though not of the smallest of many: one condition that hardly spreads asks for no
+        // more digits of all others.
+        return (1.0 - libm::floor(libm::log10(*small))).clamp(0.0, MOST_PLACES as f64) as usize;
     }
     if means.iter().all(|mean| mean.fract() == 0.0) { 0 } else { 3 }
 }

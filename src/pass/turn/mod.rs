@@ -19,7 +19,7 @@ use crate::geom::Angle;
 use crate::pass::cut;
 use crate::random::Key;
 use crate::scene::{AngleRule, Paint, See, Start};
-use crate::stage::{Angles, Graph, Sites};
+use crate::stage::{Angles, Graph, Sites, Tiles};
 
 /// Turns the tiles of a paint by the rule of its tone.
 #[must_use]
@@ -44,15 +44,16 @@ pub fn turn(paint: &Paint, sites: &Sites, graph: &Graph) -> Angles {
     })
 }
 
-/// The warning that a colouring left neighbours alike.
+/// The warning that a colouring left neighbours alike, of which both lie in the region.
 #[must_use]
-pub fn alike(paint: &Paint, graph: &Graph, angles: &Angles) -> Option<Diagnostic> {
+pub fn alike(paint: &Paint, graph: &Graph, angles: &Angles, tiles: &Tiles) -> Option<Diagnostic> {
     let AngleRule::Coloured { colours } = paint.tone.angle else { return None };
-    let alike = graph.edges().filter(|&[a, b]| angles.0[a as usize] == angles.0[b as usize]).count();
+    let inside = || graph.edges().filter(|edge| edge.iter().all(|&end| tiles.inside[end as usize]));
+    let alike = inside().filter(|&[a, b]| angles.0[a as usize] == angles.0[b as usize]).count();
     if alike == 0 {
         return None;
     }
-    let links = graph.edges().count();
+    let links = inside().count();
     let message =
         format!("{colours} directions leave {alike} of {links} pairs of neighbours in `{}` alike", paint.name);
     let hint = match colours {
