@@ -7,7 +7,7 @@ use kakeami::metrics::{Measured, grain};
 use kakeami::stats::paired_t;
 use rayon::prelude::*;
 
-use patterns::{BETTER, PROPOSED, Page, Pattern, WORSE};
+use patterns::{BETTER, PROPOSED, Page, Pattern, UNTOLD, WORSE};
 
 /// The grain of a pattern over seeds.
 fn grains(pattern: &Pattern, page: Page, seeds: u64) -> Vec<f64> {
@@ -47,6 +47,16 @@ fn seventy_tiles_are_enough() {
 #[test]
 fn beyond_the_outline_tiles_may_go_on() {
     comes_first(Page { bleed: 2.0, ..Page::square(150) }, 10);
+}
+
+/// What grain does not see, and the page on it admits: a dozen directions are as good to it as many.
+#[test]
+fn a_dozen_directions_pass_for_many() {
+    let first = mean(&grains(&PROPOSED, Page::square(150), 6));
+    for pattern in UNTOLD {
+        let other = mean(&grains(&pattern, Page::square(150), 6));
+        assert!((first - other).abs() < 0.05, "{}: {first} {other}", pattern.name);
+    }
 }
 
 /// A pattern that is turned tile by tile, moved and scaled.

@@ -20,7 +20,7 @@ impl Patches {
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
         let mut starts = vec![0];
         // Ranges that are still to be looked at, the first on top.
-        let mut left = Vec::from([0..order.len()]);
+        let mut left: Vec<_> = std::iter::once(0..order.len()).collect();
         while let Some(range) = left.pop() {
             if range.len() <= MOST {
                 order[range.clone()].sort_unstable();
