@@ -160,14 +160,14 @@ fn what_documents_point_to_is_there() {
     for document in documents {
         let path = repository().join(document);
         let text = read(&path);
-        let headings: Vec<String> = text.lines().filter(|line| line.starts_with('#')).map(anchor).collect();
         for target in targets(&text) {
-            match target.strip_prefix('#') {
-                Some(heading) => assert!(headings.iter().any(|h| h == heading), "{document}: no heading #{heading}"),
-                None => {
-                    let there = path.parent().is_some_and(|folder| folder.join(&target).exists());
-                    assert!(there, "{document}: there is no {target}");
-                }
+            let (file, heading) = target.split_once('#').map_or((&*target, None), |(file, h)| (file, Some(h)));
+            let file = if file.is_empty() { path.clone() } else { path.with_file_name("").join(file) };
+            assert!(file.exists(), "{document}: there is no {target}");
+            if let Some(heading) = heading {
+                let text = read(&file);
+                let mut headings = text.lines().filter(|line| line.starts_with('#')).map(anchor);
+                assert!(headings.any(|h| h == heading), "{document}: no heading {target}");
             }
         }
     }
