@@ -169,7 +169,9 @@ impl<'a> Table<'a> {
 #[must_use]
 pub fn number(value: f64) -> String {
     match value.abs() {
-        size if size == 0.0 || (1e-5..1e16).contains(&size) => format!("{value}"),
+        // Nothing is the same on both sides of zero.
+        0.0 => "0".to_owned(),
+        size if (1e-5..1e16).contains(&size) => format!("{value}"),
         _ => format!("{value:e}"),
     }
 }

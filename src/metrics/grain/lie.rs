@@ -28,7 +28,8 @@ impl Lie {
     /// None where there are too few triangles.
     ///
     /// A triangle counts where the centre of its circle lies in the region, or in the box of the sites where the region is
-    /// not known: those that do not are slivers along the outline, whose shape is the outline's. A cell is whole where triangles go all round its site and all of them count.
+    /// not known: those that do not are slivers along the outline, whose shape is the outline's. A cell is whole where
+    /// triangles go all round its site and all of them count.
     pub(super) fn new(measured: &Measured) -> Option<Self> {
         let graph = triangulated(measured);
         let region = if measured.region.is_empty() { Region::rect(around(measured)) } else { measured.region.clone() };
@@ -71,7 +72,8 @@ fn triangulated(measured: &Measured) -> Cow<'_, Graph> {
         return Cow::Borrowed(&measured.graph);
     }
     let (points, bounds) = (measured.sites.clone(), around(measured));
-    let spacing = (bounds.width() * bounds.height() / points.len() as f64).sqrt();
+    let page = measured.period.map_or(bounds, |period| period.area());
+    let spacing = (page.width() * page.height() / points.len() as f64).sqrt();
     let torus = measured.period.map(|period| Torus { period, images: Vec::new() });
     let sites = Sites { points, domain: bounds, extent: bounds, spacing, cells: None, tiling: None, torus };
     Cow::Owned(link::link(&sites, Link::Delaunay))

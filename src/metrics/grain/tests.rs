@@ -1,6 +1,6 @@
 //! What each factor finds where it is known.
 
-use crate::geom::{Angle, Point, Rect};
+use crate::geom::{Angle, Length, Period, Point, Rect};
 use crate::metrics::Measured;
 use crate::pass::link;
 use crate::random::Key;
@@ -109,4 +109,39 @@ fn what_is_not_known_is_not_said() {
     let whole = measure(&measured).grain_evenness.unwrap();
     measured.region = Region::empty();
     assert!((measure(&measured).grain_evenness.unwrap() - whole).abs() < 0.1);
+}
+
+#[test]
+fn a_row_that_goes_round_a_page_is_measured() {
+    for height in [0.0, 1e-12] {
+        let sites: Vec<Point> =
+            (0..12).map(|i| Point::new(2.0 + 4.0 * f64::from(i), 10.0 + height * f64::from(i % 2))).collect();
+        let edges: Vec<[u32; 2]> = (0..12).map(|i| [i, (i + 1) % 12]).collect();
+        let angles = (0..12).map(|i| Angle::degrees(f64::from(i * 77)).direction()).collect();
+        let period = Some(Period::new(Length::mm(48.0), Length::mm(48.0)));
+        let graph = Graph::new(12, &edges, Vec::new());
+        let found = measure(&Measured { sites, angles, period, ..Measured::nothing(graph) });
+        assert!(found.grain.is_none_or(|grain| (0.0..=1.0).contains(&grain)), "{found:?}");
+    }
+}
+
+#[test]
+fn islands_far_apart_have_no_more_waves_than_one() {
+    let mut sites = scattered(31, 5.0);
+    sites.extend(scattered(9, 5.0).into_iter().map(|p| Point::new(p.x + 9e7, p.y - 3e8)));
+    let strongest = waves::strongest(&sites, 0.8);
+    assert!((0.0..=1.0).contains(&strongest), "{strongest}");
+}
+
+#[test]
+fn a_hub_has_as_many_directions_as_its_page() {
+    let count = 60_000u32;
+    let mut stream = Key { seed: 2, name: "grain", purpose: "test" }.stream();
+    let angles: Vec<Angle> = (0..count).map(|_| Angle::degrees(stream.unit() * 180.0)).collect();
+    let edges: Vec<[u32; 2]> = (1..count).map(|site| [0, site]).collect();
+    let graph = Graph::new(count as usize, &edges, Vec::new());
+    let found =
+        directions::effective(&Measured { angles, sites: scattered(count as usize, 1.0), ..Measured::nothing(graph) });
+    // Two directions of a turn without preference are alike by a 24th of it.
+    assert!((found.unwrap() - 24.0).abs() < 0.5, "{found:?}");
 }

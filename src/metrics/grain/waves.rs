@@ -18,8 +18,12 @@ const WINDOW: usize = 256;
 /// Windows whose box has room for more than this many times their sites are cut as well.
 const ROOM: f64 = 2.0;
 
-/// Windows of fewer sites are not cut.
+/// Windows of fewer sites are not cut for their room.
 const SMALL: usize = 32;
+
+/// Windows wider than this many spacings hold islands far apart. They are cut however few their sites are: there would be
+/// waves without number to try.
+const FAR: f64 = 64.0;
 
 /// Windows that are looked at, at most: spread over the page where there are more.
 const WINDOWS: usize = 64;
@@ -64,7 +68,8 @@ fn windows(sites: &[Point], spacing: f64) -> Vec<Vec<Point>> {
         let (low, high) = bounds(window.iter().map(|(_, p)| *p));
         let [width, height] = [high.x - low.x, high.y - low.y];
         let is_roomy = (width + 1.0) * (height + 1.0) > ROOM * window.len() as f64 && window.len() >= SMALL;
-        if window.len() <= WINDOW && !is_roomy {
+        let is_far = width.max(height) > FAR && window.len() > 1;
+        if window.len() <= WINDOW && !is_roomy && !is_far {
             closed.push(window.into_iter().map(|(_, p)| p).collect());
             continue;
         }

@@ -22,7 +22,8 @@ pub(super) fn delaunay(points: &[Point], period: Period, spacing: f64) -> Graph 
     let size = period.area();
     // A little more than the diagonal, so that no rounding is needed to be kind.
     let enough = size.min.distance(size.max) * 1.01;
-    let mut reach = (spacing * FIRST_REACH).min(enough);
+    // Sites of one place or one row have no spacing of their own; doubling has to begin with something.
+    let mut reach = (spacing * FIRST_REACH).max(enough / 4096.0).min(enough);
     loop {
         let cover = Cover::new(points, period, reach);
         let graph = plane(&cover.points, |a, b| cover.order(*a, *b));

@@ -57,7 +57,9 @@ pub fn alike(paint: &Paint, graph: &Graph, angles: &Angles, tiles: &Tiles) -> Op
     let message =
         format!("{colours} directions leave {alike} of {links} pairs of neighbours in `{}` alike", paint.name);
     let hint = match colours {
-        0..4 => "four directions are enough on any page that does not repeat: `coloured(4)`",
+        0..4 => {
+            "four directions are enough, `coloured(4)`, but on a page that repeats, where up to seven may be needed"
+        }
         _ => "a page that repeats may need up to seven directions: `coloured(7)`",
     };
     Some(Diagnostic::warning(Code::Alike, paint.tone.angle_span, message).hint(hint))
@@ -134,6 +136,16 @@ mod tests {
             let there = many.iter().filter(|&&a| bin <= a && a < bin + Angle::degrees(18.0).to_radians()).count();
             assert!((60..140).contains(&there), "{there}");
         }
+    }
+
+    #[test]
+    fn nothing_is_tuned_where_nothing_has_a_weight() {
+        let canvas = canvas(50.0, 40.0);
+        let disks = || Placement::Poisson { radius: Length::mm(4.0), tries: 30, density: None };
+        let rule = Tuned { contrast: 0.0, diversity: 0.0, grain: 0.0, ..Tuned::default() };
+        let (_, _, tuned) = turned(&paint(&canvas, disks(), AngleRule::Tuned(rule)), &canvas);
+        let (_, _, first) = turned(&paint(&canvas, disks(), AngleRule::Bfs(Bfs::default())), &canvas);
+        assert_eq!(tuned, first);
     }
 
     #[test]

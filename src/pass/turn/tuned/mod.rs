@@ -52,6 +52,10 @@ pub(super) fn tune(
     start: &[u32],
     key: &Key<'_>,
 ) -> Vec<u32> {
+    if [rule.contrast, rule.diversity, rule.grain].iter().all(|&weight| weight == 0.0) {
+        // Where nothing has a weight every change would be as good as none.
+        return start.to_vec();
+    }
     let patches = Patches::new(points);
     let links = Links::new(graph, &patches, seen);
     let costs = Costs::new(rule, &links.offsets);
