@@ -20,7 +20,8 @@ pub(super) fn write(folder: &Path, entries: &[Entry]) -> Ended {
     }
     let mut taken = BTreeSet::new();
     let mut pending: Vec<(std::path::PathBuf, Pending)> = Vec::new();
-    for paint in entries.chunk_by(|a, b| a.paint == b.paint) {
+    // Patterns of a file are each their own, though their names be the same.
+    for paint in entries.chunk_by(|a, b| a.paint == b.paint && a.seed.is_some() && a.seed != b.seed) {
         let name = &paint[0].paint;
         let sketches: Vec<Sketch> = paint.iter().filter_map(|entry| entry.sketch.clone()).collect();
         let stem = stem(name, &mut taken);
