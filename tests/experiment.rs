@@ -166,6 +166,37 @@ fn an_edited_scene_does_not_mix_with_earlier_runs() {
 }
 
 #[test]
+fn no_journal_that_was_put_aside_is_written_over() {
+    let desk = desk();
+    let run = |seeds: &str, words: &[&str]| {
+        let ran = desk.kake(&["experiment", "trial.kake", "-o", "out", "--seeds", seeds]);
+        assert_eq!(ran.status(), 0, "{}", ran.err());
+        words.iter().for_each(|words| assert!(ran.err().contains(words), "{words}: {}", ran.err()));
+        (desk.get("out/runs.journal"), ran.err())
+    };
+    let (first, _) = run("3..3", &[]);
+    let (second, _) = run("4..4", &["all runs are done anew", "runs.journal.old\n"]);
+    let (third, _) = run("5..5", &["all runs are done anew", "runs.journal.old-2\n"]);
+    assert!(first != second && second != third && first != third);
+    assert!(desk.get("out/runs.journal.old") == first && desk.get("out/runs.journal.old-2") == second);
+    // What was put aside unfinished is gone on with.
+    let lines: Vec<&[u8]> = first.split_inclusive(|&byte| byte == b'\n').collect();
+    desk.put("out/runs.journal.old", lines[..3].concat());
+    let (again, said) = run("3..3", &["runs.journal.old-3\n", "taken up again", "2 of 6 runs are finished already"]);
+    assert!(again == first && !said.contains("done anew"), "{said}");
+    assert!(!desk.path("out/runs.journal.old").exists());
+    assert!(desk.get("out/runs.journal.old-2") == second && desk.get("out/runs.journal.old-3") == third);
+    // Of a first line that is damaged it cannot be told whether the scene is another.
+    let mut damaged = first.clone();
+    damaged[40] ^= 1;
+    desk.put("out/runs.journal", &damaged);
+    let (anew, said) = run("3..3", &["is damaged", "all runs are done anew", "runs.journal.old\n"]);
+    assert!(anew == first && !said.contains("the scene, its files"), "{said}");
+    assert!(desk.get("out/runs.journal.old") == damaged);
+    assert!(desk.get("out/runs.journal.old-2") == second && desk.get("out/runs.journal.old-3") == third);
+}
+
+#[test]
 fn shards_add_up_to_the_whole() {
     let desk = desk();
     desk.quietly(&["experiment", "trial.kake", "-o", "whole"]);

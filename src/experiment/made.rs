@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::scene::Limits;
+
 use super::{Figure, Outcome, Picture, Recipe};
 
 #[derive(Serialize)]
@@ -41,6 +43,10 @@ struct Drawn<'a> {
 pub fn command(recipe: &Recipe) -> String {
     let mut words = vec!["kake".to_owned(), "experiment".to_owned(), quoted(&recipe.scene), quoted(&recipe.experiment)];
     words.extend(recipe.sets.iter().map(|(name, value)| format!("--set {}", quoted(&format!("{name}={value}")))));
+    // Limits are part of the recipe: without those that were lifted, runs would fail, or be taken for another's.
+    let default = Recipe::named(&Limits::default());
+    let lifted = recipe.limits.iter().filter(|&(name, value)| default.get(name) != Some(value));
+    words.extend(lifted.map(|(name, value)| format!("--limit {}", quoted(&format!("{name}={value}")))));
     words.extend(recipe.seeds.map(|[from, to]| format!("--seeds {from}..{to}")));
     words.extend(recipe.only.as_ref().map(|only| format!("--only {}", quoted(only))));
     words.push("-o DIR".to_owned());

@@ -4,6 +4,7 @@ use super::*;
 use crate::Config;
 use crate::loader::MemoryLoader;
 use crate::lower::lower;
+use crate::scene::Limits;
 
 fn prepared(text: &str) -> Prepared {
     let mut loader = MemoryLoader::default();
@@ -93,6 +94,16 @@ fn done(run: usize, figures: &[(&str, Option<f64>)]) -> Done {
 }
 
 const TWO: &str = "param a = 1 experiment e { seeds: 0 .. 3 factors: { a: [1, 2] } }";
+
+#[test]
+fn commands_name_the_limits_that_were_lifted() {
+    let (mut recipe, _) = ready(TWO);
+    assert_eq!(command(&recipe), "kake experiment scene.kake e -o DIR");
+    recipe.limits = Recipe::named(&Limits { tiles: 5, runs: 2_000_000, ..Limits::default() });
+    recipe.seeds = Some([1, 2]);
+    let words = "kake experiment scene.kake e --limit runs=2000000 --limit tiles=5 --seeds 1..2 -o DIR";
+    assert_eq!(command(&recipe), words);
+}
 
 #[test]
 fn journals_come_back_to_the_bit() {

@@ -9,8 +9,8 @@ use crate::cli::Ended;
 use crate::cli::files::plain;
 use crate::experiment::{Done, Journal, Recipe, Shard, entry, head};
 
-/// What is added to the name of a journal that is put aside.
-const ASIDE: &str = "old";
+/// What is added to the name of a journal that is put aside; from the second on, a number follows.
+const ASIDE: &str = ".old";
 
 /// A journal that grows.
 pub(super) struct Keep {
@@ -37,7 +37,7 @@ pub(super) fn name(shard: Shard) -> String {
 
 impl Keep {
     /// Opens the journal of a share in a folder, which is made where there is none. Runs of the same recipe are taken
-    /// over; a journal of another is put aside.
+    /// over; a journal of another is put aside, and one of the same that was put aside earlier is taken up again.
     pub(super) fn open(folder: &Path, recipe: &Recipe, shard: Shard) -> Result<Self, Ended> {
         let failed = |path: &Path, error: &io::Error| {
             eprintln!("kake: cannot write {}: {}", path.display(), plain(error));
@@ -49,28 +49,55 @@ impl Keep {
         lock(&file, folder)?;
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).map_err(|error| failed(&path, &error))?;
+        let is_own = |journal: &Journal| journal.recipe == *recipe && journal.shard == shard;
         let found = Journal::read(&bytes);
-        if let Some(journal) = found.filter(|journal| journal.recipe == *recipe && journal.shard == shard) {
-            if journal.damaged > 0 {
-                eprintln!("kake: {} damaged in {}, and done again", lines(journal.damaged), path.display());
-            }
-            let length = journal.whole as u64;
-            file.set_len(length).map_err(|error| failed(&path, &error))?;
-            return Ok(Self { path, file, done: journal.done, length });
+        let is_legible = found.is_some();
+        if let Some(journal) = found.filter(is_own) {
+            file.set_len(journal.whole as u64).map_err(|error| failed(&path, &error))?;
+            return Ok(Self::of(path, file, journal));
         }
+        let earlier = earlier(folder, &name(shard), is_own);
         // A first line that was cut short is not worth keeping.
         if bytes.contains(&b'\n') {
-            let aside = path.with_extension(format!("journal.{ASIDE}"));
+            let aside = free(folder, &name(shard));
             fs::rename(&path, &aside).map_err(|error| failed(&aside, &error))?;
-            eprintln!("kake: the scene, its files or its parameters are not those of the runs in {}", folder.display());
-            eprintln!("kake: all runs are done anew; the earlier ones are kept in {}", aside.display());
+            if is_legible {
+                let folder = folder.display();
+                eprintln!("kake: the scene, its files or its parameters are not those of the runs in {folder}");
+            } else {
+                eprintln!("kake: the first line of {}, which says what its runs are of, is damaged", path.display());
+            }
+            let now = if earlier.is_some() { "" } else { "all runs are done anew; " };
+            eprintln!("kake: {now}the earlier journal is kept in {}", aside.display());
             file = open(&path).map_err(|error| failed(&path, &error))?;
             lock(&file, folder)?;
+        }
+        if let Some(Earlier { path: kept, bytes, journal }) = earlier {
+            eprintln!("kake: the runs in {} are of the same scene and parameters, and taken up again", kept.display());
+            // The journal is copied, not moved: another process may have begun one in its place, which is locked by now
+            // and must not be replaced. Only when the copy is on the disk is the other one removed.
+            let copied =
+                file.set_len(0).and_then(|()| file.write_all(&bytes[..journal.whole])).and_then(|()| file.sync_all());
+            if let Err(error) = copied {
+                // Half a copy would be gone on with, and the whole one never looked at.
+                let _ = file.set_len(0);
+                return Err(failed(&path, &error));
+            }
+            let _ = fs::remove_file(kept);
+            return Ok(Self::of(path, file, journal));
         }
         let first = head(recipe, shard).map_err(|error| failed(&path, &error.into()))?;
         let begun = file.set_len(0).and_then(|()| file.write_all(first.as_bytes()));
         begun.map_err(|error| failed(&path, &error))?;
         Ok(Self { path, file, done: BTreeMap::new(), length: first.len() as u64 })
+    }
+
+    /// The journal that a file holds.
+    fn of(path: PathBuf, file: File, journal: Journal) -> Self {
+        if journal.damaged > 0 {
+            eprintln!("kake: {} damaged in {}, and done again", lines(journal.damaged), path.display());
+        }
+        Self { path, file, done: journal.done, length: journal.whole as u64 }
     }
 
     /// Whether a run is finished.
@@ -101,6 +128,46 @@ impl Keep {
     pub(super) fn close(self) -> Kept {
         Kept { done: self.done, _lock: self.file }
     }
+}
+
+/// A journal that was put aside.
+struct Earlier {
+    path: PathBuf,
+    bytes: Vec<u8>,
+    journal: Journal,
+}
+
+/// The journal to take up again among those that were put aside: the one with the most runs. What cannot be read is left
+/// where it is.
+fn earlier(folder: &Path, name: &str, is_own: impl Fn(&Journal) -> bool) -> Option<Earlier> {
+    let entries = fs::read_dir(folder).ok()?.filter_map(Result::ok);
+    let aside = entries.filter(|entry| entry.file_name().to_str().is_some_and(|file| is_aside(file, name)));
+    let read = aside.filter_map(|entry| {
+        let path = entry.path();
+        let bytes = fs::read(&path).ok()?;
+        let journal = Journal::read(&bytes).filter(&is_own)?;
+        Some(Earlier { path, bytes, journal })
+    });
+    read.max_by_key(|earlier| earlier.journal.done.len())
+}
+
+/// Whether a file is called as a journal of this name is that was put aside.
+fn is_aside(file: &str, name: &str) -> bool {
+    let rest = file.strip_prefix(name).and_then(|rest| rest.strip_prefix(ASIDE));
+    let is_number = |text: &str| text.strip_prefix('-').is_some_and(|text| text.parse::<u64>().is_ok());
+    rest.is_some_and(|rest| rest.is_empty() || is_number(rest))
+}
+
+/// The first name to put a journal aside by that no file has: finished runs are never written over.
+fn free(folder: &Path, name: &str) -> PathBuf {
+    let mut path = folder.join(format!("{name}{ASIDE}"));
+    let mut number = 1_u64;
+    // A link that leads nowhere has the name all the same.
+    while path.symlink_metadata().is_ok() {
+        number += 1;
+        path = folder.join(format!("{name}{ASIDE}-{number}"));
+    }
+    path
 }
 
 fn open(path: &Path) -> io::Result<File> {
