@@ -6,12 +6,16 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use crate::stats::{self, Anova, Assumptions, Factorial, Observation, Summary, TukeyRow};
+use crate::stats::{self, Anova, Assumptions, Factorial, Observation, Summary, Tukey, TukeyRow};
 
 use super::{Done, Plan};
 
 /// The level of significance of Tukey's test.
 pub const ALPHA: f64 = 0.05;
+
+/// Pairs of conditions that are compared at most, those of 100 conditions: pairs grow with the square, and the tables of
+/// 500 conditions would hold hundreds of megabytes.
+const MOST_PAIRS: usize = 5000;
 
 /// What conditions are represented by.
 pub const CONTRAST: &str = "e_contrast";
@@ -77,9 +81,10 @@ pub struct Analysis {
     pub anova: Anova,
     /// Whether its assumptions hold.
     pub assumptions: Assumptions,
-    /// Cohen's d of every pair of the design's conditions, by their numbers.
+    /// Cohen's d of every pair of the design's conditions, by their numbers; empty where there are more than 5,000, as
+    /// the note of the assumptions then says.
     pub cohen_d: Vec<(usize, usize, Option<f64>)>,
-    /// Tukey's test of every pair of the design's conditions.
+    /// Tukey's test of every pair of the design's conditions; empty likewise.
     pub tukey: Vec<TukeyRow>,
 }
 
@@ -174,11 +179,12 @@ impl Outcome {
             .flat_map(|(paint, measures)| measures.iter().enumerate().map(move |(measure, of)| (paint, measure, of)))
             .filter(|(_, _, of)| of.iter().any(|values| !values.is_empty()))
             .collect();
-        all.into_par_iter().map(|(paint, measure, values)| self.analysis(paint, measure, values)).collect()
+        let tukey = Tukey::new(ALPHA);
+        all.into_par_iter().map(|(paint, measure, values)| self.analysis(paint, measure, values, &tukey)).collect()
     }
 
     /// The statistics of a measure from its values by condition.
-    fn analysis(&self, paint: usize, measure: usize, values: &[Vec<f64>]) -> Analysis {
+    fn analysis(&self, paint: usize, measure: usize, values: &[Vec<f64>], tukey: &Tukey) -> Analysis {
         let plan = &self.plan;
         let design: Vec<usize> = plan.design().filter(|&condition| !values[condition].is_empty()).collect();
         let observation = |condition: usize, value: f64| Observation {
@@ -196,19 +202,30 @@ impl Outcome {
                 .flat_map(|&condition| values[condition].iter().map(move |&value| observation(condition, value)))
                 .collect(),
         };
-        let pairs = design.iter().enumerate().flat_map(|(i, &a)| design[i + 1..].iter().map(move |&b| (a, b)));
-        let groups: Vec<(String, Vec<f64>)> = design
-            .iter()
-            .map(|&condition| (plan.conditions[condition].name.clone(), values[condition].clone()))
-            .collect();
+        let mut assumptions = stats::assumptions(&factorial);
+        let pairs = design.len() * design.len().saturating_sub(1) / 2;
+        let (cohen_d, tukey) = if pairs > MOST_PAIRS {
+            let count = design.len();
+            let note = format!("{count} conditions make {pairs} pairs; pairs are compared up to {MOST_PAIRS}");
+            let notes: Vec<String> = assumptions.note.take().into_iter().chain([note]).collect();
+            assumptions.note = Some(notes.join("; "));
+            (Vec::new(), Vec::new())
+        } else {
+            let pairs = design.iter().enumerate().flat_map(|(i, &a)| design[i + 1..].iter().map(move |&b| (a, b)));
+            let groups: Vec<(String, Vec<f64>)> = design
+                .iter()
+                .map(|&condition| (plan.conditions[condition].name.clone(), values[condition].clone()))
+                .collect();
+            (pairs.map(|(a, b)| (a, b, stats::cohen_d(&values[a], &values[b]))).collect(), tukey.rows(&groups))
+        };
         Analysis {
             paint,
             measure,
             summaries: values.iter().map(|values| stats::summary(values)).collect(),
             anova: stats::anova(&factorial),
-            assumptions: stats::assumptions(&factorial),
-            cohen_d: pairs.map(|(a, b)| (a, b, stats::cohen_d(&values[a], &values[b]))).collect(),
-            tukey: stats::tukey(&groups, ALPHA),
+            assumptions,
+            cohen_d,
+            tukey,
         }
     }
 }

@@ -155,6 +155,30 @@ fn outcomes_do_not_depend_on_the_order_of_runs() {
 }
 
 #[test]
+fn pairs_beyond_the_most_are_left_out_with_a_note() {
+    let note = "101 conditions make 5050 pairs; pairs are compared up to 5000";
+    for (count, pairs) in [(100, 4950), (101, 0)] {
+        let levels: Vec<String> = (0..count).map(|level| level.to_string()).collect();
+        let levels = levels.join(", ");
+        let (_, plan) = ready(&format!("param a = 1 experiment e {{ seeds: 0 .. 2 factors: {{ a: [{levels}] }} }}"));
+        let runs = (0..plan.runs()).map(|run| done(run, &[("e_contrast", Some(libm::sin(run as f64)))]));
+        let outcome = Outcome::new(plan.clone(), runs);
+        let analysis = &outcome.analyses[0];
+        assert_eq!((analysis.cohen_d.len(), analysis.tukey.len()), (pairs, pairs));
+        let said = analysis.assumptions.note.as_deref().unwrap_or_default();
+        assert_eq!(said.ends_with(note), pairs == 0, "{said}");
+        for (file, table) in tables::tables(&outcome).unwrap() {
+            let text = String::from_utf8(table).unwrap();
+            match file {
+                "cohen_d.csv" | "tukey.csv" => assert_eq!(text.lines().count(), 1 + pairs),
+                "assumptions.csv" => assert_eq!(text.contains(note), pairs == 0),
+                _ => (),
+            }
+        }
+    }
+}
+
+#[test]
 fn numbers_are_as_short_as_they_can_be() {
     for (value, text) in
         [(0.1, "0.1"), (64.0, "64"), (-0.25, "-0.25"), (1e-300, "1e-300"), (1.5e20, "1.5e20"), (0.0, "0")]

@@ -16,6 +16,7 @@ mod paired;
 mod project;
 mod range;
 mod shapiro;
+mod tabled;
 mod tails;
 mod tukey;
 
@@ -29,4 +30,4 @@ pub use levene::{Levene, levene};
 pub use paired::{PairedT, SignedRank, paired_t, wilcoxon_signed_rank};
 pub use range::{studentized_range_quantile, studentized_range_upper};
 pub use shapiro::{ShapiroWilk, shapiro_wilk};
-pub use tukey::{TukeyRow, tukey};
+pub use tukey::{Tukey, TukeyRow, tukey};

@@ -29,7 +29,7 @@ pub(super) fn measure(outcome: &Outcome, measure: &Measure<'_>, anchor: &str, is
             @if let Some(figure) = &measure.cohen {
                 (shown([figure]))
             }
-            @if outcome.plan.design().count() > COMPARED {
+            @if outcome.plan.design().count() > COMPARED && !analysis.cohen_d.is_empty() {
                 p.soft { "Cohen's d of all pairs of conditions is in cohen_d.csv." }
             }
             @if outcome.plan.conditions.iter().any(|condition| condition.levels.is_none()) {
