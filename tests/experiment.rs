@@ -208,7 +208,11 @@ fn shards_add_up_to_the_whole() {
     refused(&["a", "b"], "the shard 3/3 is missing");
     refused(&["a"], "the shards 2/3, 3/3 are missing");
     refused(&["a", "b", "a"], "the shard 1/3 is given twice");
-    refused(&["whole"], "whole holds no shard");
+    refused(&["a", "whole"], "is one of 3 shards, whole/runs.journal one of 1");
+    fs::create_dir(desk.path("empty")).expect("the desk can be written");
+    refused(&["empty"], "empty holds no shard");
+    desk.quietly(&["experiment", "merge", "whole", "-o", "one"]);
+    same(&desk, "whole", "one");
     desk.quietly(&["experiment", "trial.kake", "-o", "a", "--shard", "3/3"]);
     assert_eq!(rows(&desk, "a/runs-3-of-3.csv").len(), 8);
     // The scene itself is not needed any more.

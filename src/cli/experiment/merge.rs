@@ -69,6 +69,11 @@ fn read(folder: &Path) -> Result<Vec<(PathBuf, Journal)>, (String, Ended)> {
         }
     }
     paths.sort();
+    // One shard of one is a whole run.
+    let whole = folder.join(keep::name(Shard::WHOLE));
+    if paths.is_empty() && whole.is_file() {
+        paths.push(whole);
+    }
     if paths.is_empty() {
         let words = format!("{} holds no shard: `kake experiment --shard I/N` writes one", folder.display());
         return Err((words, Ended::Usage));

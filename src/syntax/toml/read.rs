@@ -60,10 +60,13 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// The span of a range of bytes.
+    /// The span of a range of bytes. The parser of TOML counts a bad escape as two bytes, whatever the second begins.
     pub(super) fn span(&self, range: std::ops::Range<usize>) -> Span {
         let length = self.text.len();
-        Span::new(self.source, range.start.min(length), range.end.min(length))
+        let is_between = |at: &usize| self.text.is_char_boundary(*at);
+        let start = (0..=range.start.min(length)).rev().find(is_between).unwrap_or(0);
+        let end = (range.end.min(length)..=length).find(is_between).unwrap_or(length);
+        Span::new(self.source, start, end)
     }
 
     /// The entries of a table in the order of the text.

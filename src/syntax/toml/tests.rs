@@ -300,6 +300,16 @@ fn nesting_is_bounded() {
 }
 
 #[test]
+fn spans_hold_whole_characters() {
+    let text = "[tone.a]\n=\"\\é[";
+    let (_, diagnostics) = read(arbitrary::source(), text);
+    assert!(!diagnostics.is_empty());
+    for span in diagnostics.iter().filter_map(|diagnostic| diagnostic.span) {
+        assert!(text.get(span.start as usize..span.end as usize).is_some(), "{span:?}");
+    }
+}
+
+#[test]
 fn a_scene_may_be_nested_as_deeply_as_in_the_language() {
     let text = format!("[let]\na = {}1{}\n", "[".repeat(128), "]".repeat(128));
     assert_eq!(shape(&good(&write(&good(&text)))), shape(&good(&text)));
