@@ -6,15 +6,19 @@
 
 /// Where the value of a string came from.
 #[derive(Debug)]
-pub(super) struct Places {
+pub(super) struct Places<'a> {
+    /// The string as it is written.
+    raw: &'a str,
+    /// Where it begins in the text.
+    start: usize,
     /// Runs of bytes that stand in the text as they stand in the value: where each begins in the value and in the
     /// text. In ascending order, never empty.
     runs: Vec<(usize, usize)>,
 }
 
-impl Places {
+impl<'a> Places<'a> {
     /// The places of the string that is written as `raw` from the byte `start` on.
-    pub(super) fn new(raw: &str, start: usize) -> Self {
+    pub(super) fn new(raw: &'a str, start: usize) -> Self {
         let (quote, multiline) = match raw.as_bytes() {
             [b'"', b'"', b'"', ..] => (b'"', true),
             [b'\'', b'\'', b'\'', ..] => (b'\'', true),
@@ -42,15 +46,17 @@ impl Places {
             at += written;
             runs.push((value, start + at));
         }
-        Self { runs }
+        Self { raw, start, runs }
     }
 
-    /// Where the byte `offset` of the value stands in the text. Within an escape, where the escape begins.
+    /// Where the byte `offset` of the value stands in the text. Within an escape, where the escape begins; always where a
+    /// character begins, for what the parser makes of an escape that is none is not known.
     pub(super) fn place(&self, offset: usize) -> usize {
         let next = self.runs.partition_point(|&(value, _)| value <= offset);
         let (value, text) = self.runs[next.saturating_sub(1)];
         let bound = self.runs.get(next).map_or(usize::MAX, |&(_, text)| text);
-        (text + (offset - value)).min(bound)
+        let within = (text + (offset - value)).min(bound).saturating_sub(self.start).min(self.raw.len());
+        self.start + (0..=within).rev().find(|&at| self.raw.is_char_boundary(at)).unwrap_or(0)
     }
 }
 
@@ -70,7 +76,8 @@ fn escape(text: &str) -> (usize, usize) {
             let rest = &text[1..];
             (1 + rest.len() - rest.trim_start_matches([' ', '\t', '\r', '\n']).len(), 0)
         }
-        Some(_) => (2, 1),
+        // One letter is meant by another, or nothing is.
+        Some(_) => (1 + text.chars().nth(1).map_or(0, char::len_utf8), 1),
         None => (1, 0),
     }
 }

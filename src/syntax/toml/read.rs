@@ -83,7 +83,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The written form of a string and the places of its value.
-    pub(super) fn places(&self, value: Value<'_>) -> (&'a str, Places) {
+    pub(super) fn places(&self, value: Value<'_>) -> (&'a str, Places<'a>) {
         let range = value.span();
         let raw = self.text.get(range.clone()).unwrap_or("");
         (raw, Places::new(raw, range.start))
