@@ -165,7 +165,7 @@ const RULES: [&str; 9] = [
     "tuned(grain: 0.15, least: 0.46)",
     "tuned(grain: 5.4, least: 0.386)",
     "tuned(grain: 0, least: 0.42, diversity: 5)",
-    "tuned(grain: 0, least: 0)",
+    "tuned(grain: 0, least: 0.03)",
     "tuned(rounds: 50)",
 ];
 
