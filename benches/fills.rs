@@ -1,12 +1,12 @@
 //! How many strokes a second one thread draws of every fill, from tiles to drawing: `cargo bench --bench fills`. The items
 //! are strokes as they come out, cut to pieces by the tiles that lie over each other.
 
+mod support;
+
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use kakeami::PaintStages;
 use kakeami::drawing::{Drawing, Layer};
-use kakeami::loader::MemoryLoader;
-use kakeami::lower::{LowerConfig, lower};
 use kakeami::pass::draw::{Assembly, Setting};
 use kakeami::scene::{Canvas, Limits, Paint};
 
@@ -37,12 +37,7 @@ fn scene(fill: &str, shape: &str) -> (Canvas, Paint) {
          tone page {{ place: poisson(radius: 3.6mm) shape: {shape} angle: bfs() fill: {fill} k: 2 }}
          paint canvas with page"
     );
-    let mut loader = MemoryLoader::default();
-    loader.files.insert("bench.kake".to_owned(), text.into_bytes().into());
-    let lowered = lower("bench.kake", &loader, &LowerConfig::default());
-    let scene = lowered.scene.unwrap_or_else(|| unreachable!("{:?}", lowered.diagnostics));
-    let paint = kakeami::paints(&scene).next().cloned();
-    (scene.canvas.clone(), paint.unwrap_or_else(|| unreachable!("the scene paints once")))
+    support::painted(&text)
 }
 
 fn drawing(canvas: &Canvas, paint: &Paint, stages: &PaintStages) -> Drawing {

@@ -1,12 +1,12 @@
 //! How many strokes a second a hand draws, one way of straying at a time, from tiles to the drawing:
 //! `cargo bench --bench hand`. The items are strokes; `RAYON_NUM_THREADS=1` says what one core does.
 
+mod support;
+
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use kakeami::PaintStages;
 use kakeami::drawing::{Drawing, Layer};
-use kakeami::loader::MemoryLoader;
-use kakeami::lower::{LowerConfig, lower};
 use kakeami::pass::draw::{Assembly, Setting};
 use kakeami::scene::{Canvas, Limits, Paint};
 
@@ -40,12 +40,7 @@ fn scene(hand: &str) -> (Canvas, Paint) {
          }}
          paint canvas with kakeami"
     );
-    let mut loader = MemoryLoader::default();
-    loader.files.insert("bench.kake".to_owned(), text.into_bytes().into());
-    let lowered = lower("bench.kake", &loader, &LowerConfig::default());
-    let scene = lowered.scene.unwrap_or_else(|| unreachable!("{:?}", lowered.diagnostics));
-    let paint = kakeami::paints(&scene).next().cloned();
-    (scene.canvas.clone(), paint.unwrap_or_else(|| unreachable!("the scene paints once")))
+    support::painted(&text)
 }
 
 fn drawing(canvas: &Canvas, paint: &Paint, stages: &PaintStages) -> Drawing {

@@ -1,11 +1,11 @@
 //! How long measuring takes, all of it and its heavy families, on the report's scene and on a hundred thousand tiles:
 //! `cargo bench --bench metrics`. The items are tiles.
 
+mod support;
+
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use kakeami::PaintStages;
-use kakeami::loader::MemoryLoader;
-use kakeami::lower::{LowerConfig, lower};
 use kakeami::metrics::{Measured, Measures, correlogram, decay, grain, space};
 use kakeami::scene::{Canvas, Limits, Paint};
 
@@ -31,12 +31,7 @@ fn scene(side: f64) -> (Canvas, Paint) {
          }}
          paint canvas with plate"
     );
-    let mut loader = MemoryLoader::default();
-    loader.files.insert("bench.kake".to_owned(), text.into_bytes().into());
-    let lowered = lower("bench.kake", &loader, &LowerConfig::default());
-    let scene = lowered.scene.unwrap_or_else(|| unreachable!("{:?}", lowered.diagnostics));
-    let paint = kakeami::paints(&scene).next().cloned();
-    (scene.canvas.clone(), paint.unwrap_or_else(|| unreachable!("the scene paints once")))
+    support::painted(&text)
 }
 
 fn stages(canvas: &Canvas, paint: &Paint) -> PaintStages {

@@ -2,12 +2,12 @@
 //! text: `cargo bench --bench stages`. The items are tiles, so that the throughput says whether a stage's time grows in
 //! step with them.
 
+mod support;
+
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use kakeami::PaintStages;
 use kakeami::drawing::Drawing;
-use kakeami::loader::MemoryLoader;
-use kakeami::lower::{LowerConfig, lower};
 use kakeami::pass::draw::{Assembly, Setting};
 use kakeami::pass::{cut, link, place, turn};
 use kakeami::scene::{Canvas, Limits, Link, Paint};
@@ -38,12 +38,7 @@ fn scene(tiles: u32) -> (Canvas, Paint) {
          }}
          paint canvas with plate"
     );
-    let mut loader = MemoryLoader::default();
-    loader.files.insert("bench.kake".to_owned(), text.into_bytes().into());
-    let lowered = lower("bench.kake", &loader, &LowerConfig::default());
-    let scene = lowered.scene.unwrap_or_else(|| unreachable!("{:?}", lowered.diagnostics));
-    let paint = kakeami::paints(&scene).next().cloned();
-    (scene.canvas.clone(), paint.unwrap_or_else(|| unreachable!("the scene paints once")))
+    support::painted(&text)
 }
 
 fn stages(canvas: &Canvas, paint: &Paint) -> PaintStages {

@@ -1,10 +1,10 @@
 //! How long it takes to place and link a million cells of an inflation tiling: `cargo bench --bench tilings`. The items
 //! are cells, so that the throughput says whether the time grows in step with them.
 
+mod support;
+
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use kakeami::loader::MemoryLoader;
-use kakeami::lower::{LowerConfig, lower};
 use kakeami::pass::{link, place};
 use kakeami::scene::{Canvas, Limits, Paint};
 
@@ -24,12 +24,7 @@ fn scene(tiling: &str, area: f64, cells: u32) -> (Canvas, Paint) {
          tone plate {{ place: {tiling}(edge: 1mm) shape: cell() bleed: 0mm fill: lines(pitch: 0.2mm) }}
          paint canvas with plate"
     );
-    let mut loader = MemoryLoader::default();
-    loader.files.insert("bench.kake".to_owned(), text.into_bytes().into());
-    let lowered = lower("bench.kake", &loader, &LowerConfig::default());
-    let scene = lowered.scene.unwrap_or_else(|| unreachable!("{:?}", lowered.diagnostics));
-    let paint = kakeami::paints(&scene).next().cloned();
-    (scene.canvas.clone(), paint.unwrap_or_else(|| unreachable!("the scene paints once")))
+    support::painted(&text)
 }
 
 fn place_and_link(bencher: Bencher<'_, '_>, (canvas, paint): (Canvas, Paint), cells: u32) {

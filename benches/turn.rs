@@ -1,12 +1,12 @@
 //! How long it takes to turn tiles: `cargo bench --bench turn`. The items are tiles, so that the throughput says whether
 //! the time grows in step with them; `tuned` runs its 300 rounds, on one thread and on all.
 
+mod support;
+
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use kakeami::loader::MemoryLoader;
-use kakeami::lower::{LowerConfig, lower};
 use kakeami::pass::{link, place, turn};
-use kakeami::scene::{Canvas, Limits, Paint};
+use kakeami::scene::{Limits, Paint};
 use kakeami::stage::{Graph, Sites};
 
 /// About how many tiles there are.
@@ -25,14 +25,8 @@ fn placed(rule: &str, tiles: u32) -> (Paint, Sites, Graph) {
          tone plate {{ place: poisson(radius: 0.6mm) angle: {rule} bleed: 0mm fill: lines(pitch: 0.1mm) k: 2 }}
          paint canvas with plate"
     );
-    let mut loader = MemoryLoader::default();
-    loader.files.insert("bench.kake".to_owned(), text.into_bytes().into());
-    let lowered = lower("bench.kake", &loader, &LowerConfig::default());
-    let scene = lowered.scene.unwrap_or_else(|| unreachable!("{:?}", lowered.diagnostics));
-    let paint = kakeami::paints(&scene).next().cloned();
-    let paint = paint.unwrap_or_else(|| unreachable!("the scene paints once"));
-    let canvas: &Canvas = &scene.canvas;
-    let sites = place::place(&paint, canvas, &Limits::default());
+    let (canvas, paint) = support::painted(&text);
+    let sites = place::place(&paint, &canvas, &Limits::default());
     let sites = sites.unwrap_or_else(|_| unreachable!("the tiles are within the limit"));
     let graph = link::link(&sites, paint.tone.link);
     (paint, sites, graph)

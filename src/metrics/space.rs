@@ -203,7 +203,7 @@ pub(crate) fn outlines(measured: &Measured) -> Vec<Vec<Point>> {
 
 /// Sites with the links of their triangulation. Links need not be Delaunay's, and sites beyond the region take part in no
 /// cell, so that they are triangulated anew.
-fn triangulated(points: &[Point], region: &Region, period: Option<Period>) -> (Sites, Graph) {
+pub(super) fn triangulated(points: &[Point], region: &Region, period: Option<Period>) -> (Sites, Graph) {
     let bounds = points.iter().fold(region.bounds(), |bounds, &p| bounds.including(p));
     // What the triangulation of a torus begins its search with.
     let spacing = (region.area() / points.len().max(1) as f64).sqrt();

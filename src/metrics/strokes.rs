@@ -36,7 +36,7 @@ impl Strokes {
         let moments: Vec<Moment> = fills.iter().take(LAYERS).map(|fill| moment(&fill.kind)).collect();
         Self(std::array::from_fn(|layer| {
             let Some(&moment) = moments.get(layer).or(moments.last()) else { return Moment::default() };
-            let is_turned = fills.get(layer).or(fills.last()).is_some_and(|fill| is_turned(&fill.kind));
+            let is_turned = fills.get(layer).or(fills.last()).is_some_and(|fill| !fill.kind.stands_on_one_lattice());
             let turn = if is_turned { TURNS[layer] } else { TURNS[0] };
             let sum = moment.sum;
             // The product of complex numbers adds angles.
@@ -63,20 +63,6 @@ impl Strokes {
             all.sum = all.sum + moment.sum * density;
         }
         (all.length > 0.0).then(|| (1.0 - all.sum.length() / all.length).clamp(0.0, 1.0))
-    }
-}
-
-/// Whether layers of a fill are turned against each other; the marks of others stand between each other as they are.
-fn is_turned(kind: &FillKind) -> bool {
-    match kind {
-        FillKind::Dots { .. } | FillKind::Crosses { .. } | FillKind::Motif { .. } => false,
-        FillKind::Lines(_)
-        | FillKind::Dashes { .. }
-        | FillKind::Arcs(_)
-        | FillKind::Waves { .. }
-        | FillKind::Scribble { .. }
-        | FillKind::Nawaami { .. }
-        | FillKind::Solid => true,
     }
 }
 

@@ -124,6 +124,21 @@ impl MotifPath {
 }
 
 impl FillKind {
+    /// Whether the marks of all layers stand on one lattice, those of one between those of another, and none is turned.
+    #[must_use]
+    pub fn stands_on_one_lattice(&self) -> bool {
+        match self {
+            Self::Dots { .. } | Self::Crosses { .. } | Self::Motif { .. } => true,
+            Self::Lines(_)
+            | Self::Dashes { .. }
+            | Self::Arcs(_)
+            | Self::Waves { .. }
+            | Self::Scribble { .. }
+            | Self::Nawaami { .. }
+            | Self::Solid => false,
+        }
+    }
+
     /// The hatch lines, where there are any.
     #[must_use]
     pub fn hatch(&self) -> Option<&Hatch> {

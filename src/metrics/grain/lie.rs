@@ -3,11 +3,9 @@
 use std::borrow::Cow;
 
 use crate::geom::{Point, Rect, Vec2};
-use crate::metrics::Measured;
-use crate::pass::link;
+use crate::metrics::{Measured, space};
 use crate::region::Region;
-use crate::scene::Link;
-use crate::stage::{Graph, Sites, Torus};
+use crate::stage::Graph;
 
 use super::variation;
 
@@ -31,8 +29,8 @@ impl Lie {
     /// not known: those that do not are slivers along the outline, whose shape is the outline's. A cell is whole where
     /// triangles go all round its site and all of them count.
     pub(super) fn new(measured: &Measured) -> Option<Self> {
-        let graph = triangulated(measured);
         let region = if measured.region.is_empty() { Region::rect(around(measured)) } else { measured.region.clone() };
+        let graph = triangulated(measured, &region);
         let mut areas = Vec::with_capacity(graph.triangles.len());
         let mut cells = vec![Cell::default(); measured.sites.len()];
         for &corners in &graph.triangles {
@@ -67,16 +65,11 @@ struct Cell {
 }
 
 /// The triangulation of the sites: the graph itself, unless its links are others.
-fn triangulated(measured: &Measured) -> Cow<'_, Graph> {
+fn triangulated<'a>(measured: &'a Measured, region: &Region) -> Cow<'a, Graph> {
     if !measured.graph.triangles.is_empty() {
         return Cow::Borrowed(&measured.graph);
     }
-    let (points, bounds) = (measured.sites.clone(), around(measured));
-    let page = measured.period.map_or(bounds, |period| period.area());
-    let spacing = (page.width() * page.height() / points.len() as f64).sqrt();
-    let torus = measured.period.map(|period| Torus { period, images: Vec::new() });
-    let sites = Sites { points, domain: bounds, extent: bounds, spacing, cells: None, tiling: None, torus };
-    Cow::Owned(link::link(&sites, Link::Delaunay))
+    Cow::Owned(space::triangulated(&measured.sites, region, measured.period).1)
 }
 
 /// The box around the sites.

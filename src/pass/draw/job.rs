@@ -189,7 +189,7 @@ impl Job<'_> {
             let slots = self.palette.slots(at);
             let slot = slots.start;
             let (kind, share) = self.layer_of(layers, number);
-            let turn = if stands_on_one_lattice(&kind) { 1 } else { number };
+            let turn = if kind.stands_on_one_lattice() { 1 } else { number };
             let bundle =
                 (!hand.is_ruled()).then(|| Bundle::new(self.paint, self.sites.original(piece.tile), i64::from(number)));
             let unturned = Frame::new(self.sites.points[piece.tile], direction(self.angles.0[piece.tile], turn));
@@ -252,20 +252,6 @@ impl Job<'_> {
             }
         }
         Ok(())
-    }
-}
-
-/// Whether the marks of all layers stand on one lattice, those of one between those of another, and none is turned.
-fn stands_on_one_lattice(kind: &FillKind) -> bool {
-    match kind {
-        FillKind::Dots { .. } | FillKind::Crosses { .. } | FillKind::Motif { .. } => true,
-        FillKind::Lines(_)
-        | FillKind::Dashes { .. }
-        | FillKind::Arcs(_)
-        | FillKind::Waves { .. }
-        | FillKind::Scribble { .. }
-        | FillKind::Nawaami { .. }
-        | FillKind::Solid => false,
     }
 }
 
