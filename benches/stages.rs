@@ -11,6 +11,7 @@ use kakeami::drawing::Drawing;
 use kakeami::pass::draw::{Assembly, Setting};
 use kakeami::pass::{cut, link, place, turn};
 use kakeami::scene::{Canvas, Limits, Link, Paint};
+use kakeami::stop::Stop;
 
 /// About how many tiles there are.
 const TILES: [u32; 4] = [10_000, 90_000, 100_000, 1_000_000];
@@ -75,7 +76,9 @@ fn stage_2_link(bencher: Bencher<'_, '_>, tiles: u32) {
 fn stage_3_turn(bencher: Bencher<'_, '_>, tiles: u32) {
     let (canvas, paint) = scene(tiles);
     let stages = stages(&canvas, &paint);
-    bencher.counter(ItemsCount::new(tiles)).bench(|| turn::turn(&paint, &stages.sites, &stages.graph));
+    bencher
+        .counter(ItemsCount::new(tiles))
+        .bench(|| turn::turn(&paint, &stages.sites, &stages.graph, &Stop::default()));
 }
 
 #[divan::bench(args = TILES, sample_count = 5)]

@@ -8,6 +8,7 @@ use divan::counter::ItemsCount;
 use kakeami::pass::{link, place, turn};
 use kakeami::scene::{Limits, Paint};
 use kakeami::stage::{Graph, Sites};
+use kakeami::stop::Stop;
 
 /// About how many tiles there are.
 const TILES: [u32; 3] = [100, 10_000, 100_000];
@@ -38,7 +39,7 @@ fn turned(bencher: Bencher<'_, '_>, rule: &str, tiles: u32, threads: usize) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.unwrap_or_else(|error| unreachable!("{error}"));
     let bencher = bencher.counter(ItemsCount::new(sites.points.len()));
-    bencher.bench(|| pool.install(|| turn::turn(&paint, &sites, &graph)));
+    bencher.bench(|| pool.install(|| turn::turn(&paint, &sites, &graph, &Stop::default())));
 }
 
 #[divan::bench(args = TILES, sample_count = 3, sample_size = 1)]

@@ -44,6 +44,7 @@ pub mod scene;
 pub mod span;
 pub mod stage;
 pub mod stats;
+pub mod stop;
 pub mod syntax;
 pub mod wedge;
 
@@ -127,7 +128,8 @@ pub struct Compiled {
 
 /// Compiles the scene at `path`, a path from the loader's root, to a drawing.
 ///
-/// Mistakes are in `lowered.diagnostics`; the drawing is there only if none of them is an error.
+/// Mistakes are in `lowered.diagnostics`; the drawing is there only if none of them is an error, and if `config`'s
+/// [`stop::Stop`] was not asked meanwhile.
 #[must_use]
 pub fn compile(path: &str, loader: &dyn Loader, config: &Config, observer: &mut dyn Observer) -> Compiled {
     observer.begin(Step::Lower, "");
@@ -172,6 +174,9 @@ fn draw(
     let mut patterns = Vec::new();
     let mut last = None;
     for (setting, item) in &items {
+        if limits.stop.is_asked() {
+            return None;
+        }
         let drawn = match item {
             Item::Outline(outline) => assembly.outline(outline, setting).map(|()| None),
             Item::Ink(ink) => assembly.ink(ink, setting).map(|()| None),
@@ -225,6 +230,11 @@ pub fn no_such_paint(name: &str, names: &[String]) -> Diagnostic {
     Diagnostic::without_span(Code::UnknownName, format!("the scene has no paint `{name}`")).maybe_hint(hint)
 }
 
+/// Says that nobody waits for a paint any more.
+fn stopped(span: Span) -> Diagnostic {
+    Diagnostic::error(Code::Limit, span, "the drawing was stopped")
+}
+
 /// What the passes find for one paint.
 #[derive(Debug)]
 pub struct PaintStages {
@@ -242,7 +252,7 @@ impl PaintStages {
     /// Runs the passes of one paint up to its tiles.
     ///
     /// # Errors
-    /// If the limit of tiles is met.
+    /// If the limit of tiles is met, or an end was asked for.
     pub fn new(
         paint: &Paint,
         canvas: &Canvas,
@@ -250,13 +260,17 @@ impl PaintStages {
         observer: &mut dyn Observer,
         warnings: &mut Vec<Diagnostic>,
     ) -> Result<Self, Diagnostic> {
-        observer.begin(Step::Place, &paint.name);
+        let mut begin = |step: Step| {
+            observer.begin(step, &paint.name);
+            if limits.stop.is_asked() { Err(stopped(paint.span)) } else { Ok(()) }
+        };
+        begin(Step::Place)?;
         let sites = place::place(paint, canvas, limits)?;
-        observer.begin(Step::Link, &paint.name);
+        begin(Step::Link)?;
         let graph = link::link(&sites, paint.tone.link);
-        observer.begin(Step::Turn, &paint.name);
-        let angles = turn::turn(paint, &sites, &graph);
-        observer.begin(Step::Cut, &paint.name);
+        begin(Step::Turn)?;
+        let angles = turn::turn(paint, &sites, &graph, &limits.stop);
+        begin(Step::Cut)?;
         let tiles = cut::cut(paint, canvas, &sites, &graph, &angles, warnings);
         warnings.extend(turn::alike(paint, &graph, &angles, &tiles));
         Ok(Self { sites, graph, angles, tiles })

@@ -20,6 +20,7 @@ use crate::field::Field;
 use crate::geom::{Angle, Length, Period, Point, Rect};
 use crate::region::Region;
 use crate::span::Span;
+use crate::stop::Stop;
 
 /// A whole scene.
 #[derive(Debug, Clone, Serialize)]
@@ -572,7 +573,7 @@ pub enum Edge {
 }
 
 /// What keeps a scene from exhausting the machine.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub struct Limits {
     /// Tiles of a paint, those beyond the region included.
     pub tiles: u64,
@@ -586,6 +587,8 @@ pub struct Limits {
     pub nesting: u64,
     /// Runs of an experiment, and pictures of it.
     pub runs: u64,
+    /// Where it is asked, passes end early and what they return is of no use; [`crate::compile`] drops it.
+    pub stop: Stop,
 }
 
 impl Default for Limits {
@@ -597,6 +600,7 @@ impl Default for Limits {
             megapixels: 400,
             nesting: 128,
             runs: 1_000_000,
+            stop: Stop::default(),
         }
     }
 }

@@ -14,6 +14,7 @@ use kakeami::lower::{LowerConfig, lower};
 use kakeami::pass::{link, place, turn};
 use kakeami::scene::{Limits, Paint};
 use kakeami::stage::{Angles, Graph, Sites};
+use kakeami::stop::Stop;
 use rayon::prelude::*;
 
 use crate::support::{here, shown};
@@ -135,7 +136,7 @@ fn turned(rule: &str, k: u8) -> Vec<Vec<Angle>> {
     let (_, paint) = paint("poisson(radius: 0.6)", rule, k);
     let paints: Vec<Paint> = (0..100).map(|seed| Paint { seed, ..paint.clone() }).collect();
     let turned = paints.par_iter().zip(&*GRAPHS).map(|(paint, (sites, graph))| {
-        let Angles(angles) = turn::turn(paint, sites, graph);
+        let Angles(angles) = turn::turn(paint, sites, graph, &Stop::default());
         angles
     });
     turned.collect()

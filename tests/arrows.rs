@@ -7,19 +7,20 @@ use std::path::{Path, PathBuf};
 use crate::support::here;
 
 /// What each part may know of.
-const ARROWS: [(&str, &[&str]); 22] = [
+const ARROWS: [(&str, &[&str]); 23] = [
     ("span", &[]),
     ("geom", &[]),
     ("random", &[]),
     ("loader", &[]),
+    ("stop", &[]),
     ("diag", &["span"]),
     ("syntax", &["span", "diag"]),
     ("region", &["geom"]),
     ("field", &["geom", "region", "random"]),
-    ("scene", &["geom", "region", "field", "span"]),
+    ("scene", &["geom", "region", "field", "span", "stop"]),
     ("stage", &["geom"]),
     ("drawing", &["geom", "scene"]),
-    ("pass", &["scene", "stage", "geom", "region", "field", "random", "diag", "span", "drawing"]),
+    ("pass", &["scene", "stage", "geom", "region", "field", "random", "diag", "span", "drawing", "stop"]),
     ("metrics", &["pass", "stage", "scene", "region", "geom", "random", "stats"]),
     ("overlay", &["drawing", "geom", "metrics", "pass", "region", "scene"]),
     ("stats", &[]),

@@ -81,7 +81,7 @@ impl Recipe {
     /// The limits by their names.
     #[must_use]
     pub fn named(limits: &Limits) -> BTreeMap<String, u64> {
-        let Limits { tiles, strokes, iterations, megapixels, nesting, runs } = *limits;
+        let &Limits { tiles, strokes, iterations, megapixels, nesting, runs, stop: _ } = limits;
         let names = [
             ("tiles", tiles),
             ("strokes", strokes),
@@ -103,6 +103,7 @@ impl Recipe {
             megapixels: get("megapixels", default.megapixels),
             nesting: get("nesting", default.nesting),
             runs: get("runs", default.runs),
+            stop: default.stop,
         }
     }
 

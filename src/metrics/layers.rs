@@ -44,6 +44,7 @@ mod tests {
     use crate::pass::{cut, link, place, turn};
     use crate::scene::{AngleRule, Asked, GridSize, Limits, Placement};
     use crate::stage::Graph;
+    use crate::stop::Stop;
 
     #[test]
     fn neighbours_differ_in_ink_and_tiles_in_their_ways() {
@@ -55,7 +56,7 @@ mod tests {
         paint.tone.asked = Asked::K(Field::new(Node::Linear { from, to, start: 1.0, end: 2.0 }));
         let sites = place::place(&paint, &canvas, &Limits::default()).unwrap();
         let graph = link::link(&sites, paint.tone.link);
-        let angles = turn::turn(&paint, &sites, &graph);
+        let angles = turn::turn(&paint, &sites, &graph, &Stop::default());
         let tiles = cut::cut(&paint, &canvas, &sites, &graph, &angles, &mut Vec::new());
         let stages = Stages { sites: &sites, graph: &graph, angles: &angles, tiles: &tiles };
         let found = measure(&Measured::new(&paint, &stages));

@@ -122,6 +122,7 @@ mod tests {
     use crate::pass::fixture::{canvas, paint};
     use crate::pass::{cut, link, place, turn};
     use crate::scene::{AngleRule, GridSize, Limits, Placement};
+    use crate::stop::Stop;
 
     #[test]
     fn a_checkerboard_measures_as_reported() {
@@ -130,7 +131,7 @@ mod tests {
         let paint = paint(&canvas, grid, AngleRule::Checkerboard);
         let sites = place::place(&paint, &canvas, &Limits::default()).unwrap();
         let graph = link::link(&sites, paint.tone.link);
-        let angles = turn::turn(&paint, &sites, &graph);
+        let angles = turn::turn(&paint, &sites, &graph, &Stop::default());
         let tiles = cut::cut(&paint, &canvas, &sites, &graph, &angles, &mut Vec::new());
         let stages = Stages { sites: &sites, graph: &graph, angles: &angles, tiles: &tiles };
         let measures = Measures::new(&Measured::new(&paint, &stages));

@@ -101,6 +101,7 @@ mod tests {
     use crate::pass::fixture::{canvas, paint};
     use crate::pass::{cut, link, place, turn};
     use crate::scene::{AngleRule, GridSize, Limits, Placement};
+    use crate::stop::Stop;
 
     fn near(found: [Angle; 2], degrees: f64) {
         let off = found.map(|angle| angle.rp1_distance(Angle::degrees(degrees)).to_radians());
@@ -134,7 +135,7 @@ mod tests {
         paint.tone.fill[0].kind = hatch.map_or(FillKind::Solid, FillKind::Arcs);
         let sites = place::place(&paint, &canvas, &Limits::default()).unwrap();
         let graph = link::link(&sites, paint.tone.link);
-        let angles = turn::turn(&paint, &sites, &graph);
+        let angles = turn::turn(&paint, &sites, &graph, &Stop::default());
         let tiles = cut::cut(&paint, &canvas, &sites, &graph, &angles, &mut Vec::new());
         let stages = Stages { sites: &sites, graph: &graph, angles: &angles, tiles: &tiles };
         let found = Run::of(&paint, &stages, &[1]);

@@ -180,6 +180,7 @@ mod tests {
     use crate::pass::{cut, link, place, turn};
     use crate::region::Region;
     use crate::scene::{AngleRule, Bfs, Limits, Placement, Shape};
+    use crate::stop::Stop;
 
     fn cells(field: Field, range: Range, solid: Option<f64>) -> (Canvas, Paint) {
         let canvas = canvas(4.0, 4.0);
@@ -194,7 +195,7 @@ mod tests {
     fn tiles(paint: &Paint, canvas: &Canvas) -> (Tiles, f64, Vec<Diagnostic>) {
         let sites = place::place(paint, canvas, &Limits::default()).unwrap();
         let graph = link::link(&sites, paint.tone.link);
-        let angles = turn::turn(paint, &sites, &graph);
+        let angles = turn::turn(paint, &sites, &graph, &Stop::default());
         let mut warnings = Vec::new();
         let tiles = cut::cut(paint, canvas, &sites, &graph, &angles, &mut warnings);
         let ink = cut::reckon(paint, canvas, &sites, &graph, &angles, &tiles);

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::diag::{Code, Diagnostic, grouped};
 use crate::scene::Limits;
 use crate::span::Span;
+use crate::stop::Stop;
 
 /// Looks for each mark that may be drawn: most lines of densely stacked tiles lie hidden, but that some are seen should
 /// not take forever.
@@ -50,6 +51,8 @@ pub(super) enum Exceeded {
     Marks,
     /// More looks than may be taken.
     Work,
+    /// Nobody waits for the drawing any more.
+    Stopped,
     /// The tiles lie on each other so deeply that most of the work would go into what is hidden.
     Overlap {
         /// The side of a tile in millimetres.
@@ -80,6 +83,7 @@ impl Exceeded {
             Self::Work => error(format!("this takes more work than {most} strokes should"))
                 .label("most of it goes into what is hidden or left out")
                 .hint("smaller tiles, sites farther apart or a wider pitch take less; `--limit strokes=…` lifts the limit"),
+            Self::Stopped => error("the drawing was stopped".to_owned()),
             Self::Overlap { side, spacing, depth } => {
                 let (side, spacing, depth) = (short(side), short(spacing), grouped(depth));
                 error(format!("tiles of {side}mm at a distance of {spacing}mm overlap {depth} deep"))
@@ -105,12 +109,19 @@ pub(super) struct Budget {
     most_work: u64,
     marks: AtomicU64,
     work: AtomicU64,
+    stop: Stop,
 }
 
 impl Budget {
     pub(super) fn new(limits: &Limits) -> Self {
         let most_work = limits.strokes.saturating_mul(WORK_PER_MARK).max(LEAST_WORK);
-        Self { limit: limits.strokes, most_work, marks: AtomicU64::new(0), work: AtomicU64::new(0) }
+        Self {
+            limit: limits.strokes,
+            most_work,
+            marks: AtomicU64::new(0),
+            work: AtomicU64::new(0),
+            stop: limits.stop.clone(),
+        }
     }
 
     /// Notes marks that are drawn.
@@ -120,6 +131,9 @@ impl Budget {
 
     /// Notes looks that are about to be taken. `count` may be infinite.
     pub(super) fn work(&self, count: f64) -> Result<(), Exceeded> {
+        if self.stop.is_asked() {
+            return Err(Exceeded::Stopped);
+        }
         // A cast of what is too great gives the greatest number.
         if spend(&self.work, count as u64, self.most_work) { Ok(()) } else { Err(Exceeded::Work) }
     }

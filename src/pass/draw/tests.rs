@@ -19,6 +19,7 @@ use crate::scene::{
     Outline, Over, Placement, Scene, Shape,
 };
 use crate::stage::Standing;
+use crate::stop::Stop;
 
 const NEAR: f64 = 1e-6;
 
@@ -120,7 +121,7 @@ impl Run {
     fn new(paint: &Paint, canvas: &Canvas) -> Self {
         let sites = place::place(paint, canvas, &Limits::default()).unwrap();
         let graph = link::link(&sites, paint.tone.link);
-        let angles = turn::turn(paint, &sites, &graph);
+        let angles = turn::turn(paint, &sites, &graph, &Stop::default());
         let mut warnings = Vec::new();
         let tiles = cut::cut(paint, canvas, &sites, &graph, &angles, &mut warnings);
         Self { sites, graph, angles, tiles, warnings, visible: visible(paint, canvas) }

@@ -22,6 +22,7 @@ use crate::geom::{Period, Point, Rect};
 use crate::random::{Key, Stream};
 use crate::scene::{Amount, Canvas, Domain, GridSize, Limits, Link, Paint, Placement, Shape};
 use crate::stage::{Sites, Torus};
+use crate::stop::Stop;
 use budget::Budget;
 
 /// Finds the sites of a paint. There may be none, for instance where the domain is empty.
@@ -50,6 +51,7 @@ pub fn place(paint: &Paint, canvas: &Canvas, limits: &Limits) -> Result<Sites, D
         wants_cells: tone.link == Link::Edges || matches!(tone.shape, Shape::Cell { .. }),
         budget: Budget::new(limits.tiles, tone.place_span),
         torus,
+        stop: &limits.stop,
     };
     let mut sites = find(&tone.place, &ground)?;
     if let Some(period) = canvas.period() {
@@ -122,6 +124,7 @@ struct Ground<'a> {
     budget: Budget,
     /// The period, where the domain goes on beyond its borders.
     torus: Option<Period>,
+    stop: &'a Stop,
 }
 
 impl Ground<'_> {

@@ -39,7 +39,7 @@ pub(super) fn place(
     // Rows and columns are no longer.
     sites.cells = None;
     sites.tiling = None;
-    for _ in 0..rounds {
+    for _ in (0..rounds).take_while(|_| !ground.stop.is_asked()) {
         let graph = link::link(&sites, Link::Delaunay);
         let cells = Cells::within(bounds, &sites, &graph, Length::ZERO, Length::ZERO);
         let moved: Vec<Vec<Point>> = (0..sites.points.len().div_ceil(CHUNK))

@@ -20,10 +20,11 @@ use crate::pass::cut;
 use crate::random::Key;
 use crate::scene::{AngleRule, Paint, See, Start};
 use crate::stage::{Angles, Graph, Sites, Tiles};
+use crate::stop::Stop;
 
-/// Turns the tiles of a paint by the rule of its tone.
+/// Turns the tiles of a paint by the rule of its tone. Where it is stopped, some are not turned as they should be.
 #[must_use]
-pub fn turn(paint: &Paint, sites: &Sites, graph: &Graph) -> Angles {
+pub fn turn(paint: &Paint, sites: &Sites, graph: &Graph, stop: &Stop) -> Angles {
     let key = Key { seed: paint.seed, name: &paint.name, purpose: "angle" };
     Angles(match &paint.tone.angle {
         AngleRule::Bfs(rule) => {
@@ -33,7 +34,8 @@ pub fn turn(paint: &Paint, sites: &Sites, graph: &Graph) -> Angles {
         AngleRule::Tuned(rule) => {
             let seen = seen(rule.see, paint, sites, graph);
             let steps = bfs::turn(graph, rule.candidates, &seen, &key);
-            let steps = tuned::tune(graph, &sites.points, &seen, rule, &steps, &Key { purpose: "tune", ..key });
+            let tune_key = Key { purpose: "tune", ..key };
+            let steps = tuned::tune(graph, &sites.points, &seen, rule, &steps, &tune_key, stop);
             directions(steps, rule.candidates, first(rule.start, rule.candidates, &key))
         }
         AngleRule::Coloured { colours } => directions(coloured::colours(graph, *colours, &key), *colours, 0),
@@ -103,7 +105,7 @@ mod tests {
     fn turned(paint: &Paint, canvas: &Canvas) -> (Sites, Graph, Vec<f64>) {
         let sites = place(paint, canvas, &Limits::default()).unwrap();
         let graph = link(&sites, Link::Delaunay);
-        let Angles(angles) = turn(paint, &sites, &graph);
+        let Angles(angles) = turn(paint, &sites, &graph, &Stop::default());
         assert_eq!(angles.len(), sites.points.len());
         (sites, graph, angles.into_iter().map(Angle::to_radians).collect())
     }

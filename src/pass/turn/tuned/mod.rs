@@ -21,6 +21,7 @@ use crate::geom::Point;
 use crate::random::{Key, Table};
 use crate::scene::Tuned;
 use crate::stage::Graph;
+use crate::stop::Stop;
 
 use energy::{Costs, Crowd, LinkCosts};
 use links::{Links, Lists};
@@ -51,6 +52,7 @@ pub(super) fn tune(
     rule: &Tuned,
     start: &[u32],
     key: &Key<'_>,
+    stop: &Stop,
 ) -> Vec<u32> {
     if [rule.contrast, rule.diversity, rule.grain].iter().all(|&weight| weight == 0.0) {
         // Where nothing has a weight every change would be as good as none.
@@ -63,10 +65,10 @@ pub(super) fn tune(
     let stir = Stir { rule, patches: &patches, links: &links, costs: &costs, key };
     let classes = classes(&links.around(&patches));
     let mut round = 0;
-    while round < rule.rounds {
+    while round < rule.rounds && !stop.is_asked() {
         let rounds = round..(round + ROUNDS_A_VISIT).min(rule.rounds);
         let link_costs = costs.links(f64::from(rounds.end) / f64::from(rule.rounds));
-        for class in &classes {
+        for class in classes.iter().take_while(|_| !stop.is_asked()) {
             let visit = |&patch: &u32| stir.visit(patch as usize, &steps, &link_costs, rounds.clone());
             let turned: Vec<Vec<u16>> = class.par_iter().map(visit).collect();
             for (&patch, turned) in class.iter().zip(turned) {
@@ -356,7 +358,7 @@ mod tests {
             let start = bfs::turn(&graph, candidates, &seen, &KEY);
             let on = |threads| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-                pool.install(|| tune(&graph, &sites.points, &seen, &rule, &start, &KEY))
+                pool.install(|| tune(&graph, &sites.points, &seen, &rule, &start, &KEY, &Stop::default()))
             };
             let steps = on(1);
             prop_assert_eq!(&steps, &on(2));
@@ -397,7 +399,7 @@ mod tests {
         let rule = Tuned { rounds: 10, ..Tuned::default() };
         let seen = vec![1; 20_000];
         let start = bfs::turn(&graph, 360, &seen, &KEY);
-        let steps = tune(&graph, &points, &seen, &rule, &start, &KEY);
+        let steps = tune(&graph, &points, &seen, &rule, &start, &KEY, &Stop::default());
         assert!(steps[1..].iter().all(|&step| step != steps[0]));
     }
 }
