@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::support::here;
 
 /// What each part may know of.
-const ARROWS: [(&str, &[&str]); 24] = [
+const ARROWS: [(&str, &[&str]); 25] = [
     ("span", &[]),
     ("geom", &[]),
     ("random", &[]),
@@ -27,6 +27,7 @@ const ARROWS: [(&str, &[&str]); 24] = [
     ("chart", &["geom"]),
     ("illustrate", &["chart", "metrics"]),
     ("back", &["drawing", "geom", "scene"]),
+    ("compare", &["back", "drawing", "geom", "metrics", "scene", "stage"]),
     ("library", &["diag", "loader", "span", "syntax"]),
     ("lower", &["syntax", "scene", "region", "field", "loader", "diag", "span", "geom", "random"]),
     (
@@ -39,6 +40,7 @@ const ARROWS: [(&str, &[&str]); 24] = [
         &[
             "back",
             "chart",
+            "compare",
             "diag",
             "drawing",
             "experiment",
