@@ -348,8 +348,27 @@ fn walked(from: &str, path: &str) -> String {
     parts.join("/")
 }
 
+/// The place of a file of a folder that is to be written, its folder made: no link leads out of the folder.
+pub(super) fn below(folder: &Path, file: &str) -> io::Result<PathBuf> {
+    let out = || io::Error::other("a link there leads out of the library's folder");
+    let target = folder.join(file);
+    // The nearest folder that is there already says where new ones are made.
+    let parent = target.parent().unwrap_or(folder);
+    let there = parent.ancestors().find(|folder| folder.symlink_metadata().is_ok()).unwrap_or(folder);
+    if !there.canonicalize()?.starts_with(folder) {
+        return Err(out());
+    }
+    fs::create_dir_all(parent)?;
+    match target.symlink_metadata() {
+        Ok(kind) if kind.is_symlink() && !target.canonicalize().is_ok_and(|full| full.starts_with(folder)) => {
+            Err(out())
+        }
+        _ => Ok(target),
+    }
+}
+
 /// Reads a small file of a folder, which no link leads out of.
-fn read_below(folder: &Path, file: &str) -> io::Result<Vec<u8>> {
+pub(super) fn read_below(folder: &Path, file: &str) -> io::Result<Vec<u8>> {
     let full = folder.join(file).canonicalize()?;
     if !full.starts_with(folder) {
         return Err(io::Error::other("it is a link that leads out of its folder"));

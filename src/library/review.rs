@@ -1,0 +1,171 @@
+//! What a test of a library found, for people to judge and for other programs to read.
+//!
+//! A [`Review`] is written as one HTML page ([`super::page`]), as Markdown with pictures beside it ([`super::markdown`]) and as
+//! JUnit ([`super::junit`]).
+
+use std::fmt;
+
+use super::pin;
+
+/// All that a test found.
+#[derive(Debug, Clone, Default)]
+pub struct Review {
+    /// What was tested: the library's name and version.
+    pub title: String,
+    /// Every swatch, in order.
+    pub swatches: Vec<Swatch>,
+    /// What is wrong besides: dependencies that are not what was locked.
+    pub faults: Vec<String>,
+}
+
+/// One swatch.
+#[derive(Debug, Clone)]
+pub struct Swatch {
+    /// Its name: the path of its file in `swatches/`, without the ending.
+    pub name: String,
+    /// The path of its file from the library's root; of the pin for one whose swatch is gone.
+    pub file: String,
+    /// How it compares with its pin.
+    pub outcome: Outcome,
+    /// Every value that is not what was pinned.
+    pub changes: Vec<pin::Change>,
+    /// Its pictures, as PNG.
+    pub pictures: Pictures,
+    /// What was said of it: diagnostics as text.
+    pub said: String,
+}
+
+/// How a swatch compares with its pin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Outcome {
+    /// It is what was pinned.
+    Same,
+    /// It is something else than what was pinned.
+    Changed(Reason),
+    /// It has no pin yet.
+    New,
+    /// It does not compile.
+    Broken,
+    /// There is a pin, but no swatch of its name.
+    Orphan,
+}
+
+/// What differs of a swatch that changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Reason {
+    /// The drawing, and so many of the picture's pixels.
+    Seen {
+        /// How many pixels differ visibly.
+        pixels: u64,
+        /// Of how many.
+        of: u64,
+    },
+    /// The drawing and some figures, but no pixel of the picture.
+    Measured,
+    /// The drawing alone.
+    Hidden,
+    /// The figures or warnings alone: the drawing is the same.
+    Figures,
+    /// The drawing; what it looked like is not known, for the pinned picture is missing or damaged.
+    Unseen,
+    /// The drawing is the same, but the pinned picture is missing or damaged.
+    PictureLost,
+    /// The pin cannot be read.
+    PinLost,
+}
+
+impl Outcome {
+    /// In one word.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Same => "same",
+            Self::Changed(_) => "changed",
+            Self::New => "new",
+            Self::Broken => "broken",
+            Self::Orphan => "orphan",
+        }
+    }
+}
+
+/// In a sentence; nothing for what is the same.
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Same => Ok(()),
+            Self::Changed(reason) => reason.fmt(f),
+            Self::New => f.write_str("it has no pin yet"),
+            Self::Broken => f.write_str("it does not compile"),
+            Self::Orphan => f.write_str("there is a pin, but no swatch of this name"),
+        }
+    }
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Seen { pixels, of } => {
+                let (shown, all) = (crate::diag::grouped(*pixels), crate::diag::grouped(*of));
+                let (verb, share) = (if *pixels == 1 { "differs" } else { "differ" }, *pixels as f64 / *of as f64);
+                write!(f, "{shown} of {all} pixels {verb} ({:.1} %)", share * 100.0)
+            }
+            Self::Measured => {
+                f.write_str("the drawing and its figures changed, but no pixel of the small picture shows it")
+            }
+            Self::Hidden => {
+                f.write_str("the drawing changed by so little that neither the small picture nor any figure shows it")
+            }
+            Self::Figures => f.write_str("the drawing is the same; its figures or warnings changed"),
+            Self::Unseen => f.write_str("the drawing changed; the pinned picture is missing or damaged"),
+            Self::PictureLost => f.write_str("the drawing is the same, but the pinned picture is missing or damaged"),
+            Self::PinLost => f.write_str("the pin cannot be read"),
+        }
+    }
+}
+
+/// Pictures of a swatch as PNG.
+#[derive(Debug, Clone, Default)]
+pub struct Pictures {
+    /// What was pinned.
+    pub old: Option<Vec<u8>>,
+    /// What it is now.
+    pub new: Option<Vec<u8>>,
+    /// What went and what came.
+    pub difference: Option<Vec<u8>>,
+}
+
+impl Pictures {
+    /// Those that there are, each with what it is called.
+    pub fn named(&self) -> impl Iterator<Item = (&'static str, &[u8])> {
+        let all = [("old", &self.old), ("new", &self.new), ("difference", &self.difference)];
+        all.into_iter().filter_map(|(name, picture)| Some((name, picture.as_deref()?)))
+    }
+}
+
+impl Review {
+    /// Whether all swatches are what was pinned, and nothing else is wrong.
+    #[must_use]
+    pub fn is_same(&self) -> bool {
+        self.faults.is_empty() && self.swatches.iter().all(|swatch| swatch.outcome == Outcome::Same)
+    }
+
+    /// How many swatches there are of each outcome: `5 swatches: 3 same, 1 changed, 1 broken`.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let words = ["same", "changed", "new", "broken", "orphan"];
+        let counted = words.into_iter().filter_map(|word| {
+            let count = self.swatches.iter().filter(|swatch| swatch.outcome.word() == word).count();
+            (count > 0).then(|| format!("{count} {word}"))
+        });
+        let counted: Vec<String> = counted.collect();
+        let n = self.swatches.len();
+        let swatches = if n == 1 { "1 swatch".to_owned() } else { format!("{n} swatches") };
+        if counted.is_empty() { swatches } else { format!("{swatches}: {}", counted.join(", ")) }
+    }
+}
+
+/// The name of a file of a report that shows a swatch.
+#[must_use]
+pub fn picture_file(swatch: &str, kind: &str) -> String {
+    format!("pictures/{}-{kind}.png", swatch.replace('/', "-"))
+}
