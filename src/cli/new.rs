@@ -71,7 +71,8 @@ pub(super) fn run(arguments: &NewArgs) -> Ended {
     }
     let shown = folder.display();
     eprintln!("{name} is ready in {shown}: three tones with their swatches, pinned. Next:");
-    eprintln!("  cd {shown} && git init && git config diff.kake.command \"kake diff\"");
+    let go = if folder == Path::new(".") { String::new() } else { format!("cd {shown} && ") };
+    eprintln!("  {go}git init && git config diff.kake.command \"kake diff\"");
     eprintln!("  change a tone, look with `kake preview swatches/weave.kake --open`, then run `kake test`");
     Ended::Done
 }
@@ -79,17 +80,18 @@ pub(super) fn run(arguments: &NewArgs) -> Ended {
 /// What the library is called.
 fn name(arguments: &NewArgs) -> Result<String, String> {
     const RULE: &str = "names have 2 to 64 letters from a to z, digits, `-` and `_`, and begin with a letter";
-    let good = |name: &str| is_name(name) && !name.eq_ignore_ascii_case("std");
+    let good = |name: &str| match name.to_ascii_lowercase().as_str() {
+        "std" => Err("`std:` names the libraries that come with the program".to_owned()),
+        _ if is_name(name) => Ok(name.to_owned()),
+        _ => Err(format!("`{name}` is no name of a library: {RULE}")),
+    };
     if let Some(name) = &arguments.name {
-        return if good(name) { Ok(name.clone()) } else { Err(format!("`{name}` is no name of a library: {RULE}")) };
+        return good(name);
     }
     // `.` and `..` have the names of the folders they mean.
     let folder = arguments.folder.canonicalize().unwrap_or_else(|_| arguments.folder.clone());
     let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    if good(&name) {
-        return Ok(name);
-    }
-    Err(format!("`{name}` is no name of a library: {RULE}; `--name NAME` gives it another than its folder's"))
+    good(&name).map_err(|words| format!("{words}; `--name NAME` gives it another name than its folder's"))
 }
 
 /// Makes the library beside its place, within the folder, and moves it there when it is whole.

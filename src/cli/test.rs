@@ -93,19 +93,17 @@ fn test(library: &Library, arguments: &TestArgs) -> (Ended, Option<Review>) {
     for said in review.swatches.iter().map(|swatch| &swatch.said).filter(|said| !said.is_empty()) {
         eprint!("{said}");
     }
-    let printed = print(words::text(&review, arguments.accept).as_bytes());
-    let kept = if arguments.accept { keep::accept(library, &judged) } else { keep::page(library, &review) };
-    let ended = if is_passed(&review, arguments.accept) { Ended::Done } else { Ended::Fault };
+    let accepted = if arguments.accept { keep::accept(library, &judged) } else { Ended::Done };
+    let is_accepted = arguments.accept && accepted == Ended::Done;
+    let printed = print(words::text(&review, is_accepted).as_bytes());
+    let kept = if arguments.accept { accepted } else { keep::page(library, &review) };
+    let ended = if is_passed(&review, is_accepted) { Ended::Done } else { Ended::Fault };
     (worse(worse(ended, kept), printed), Some(review))
 }
 
-/// Whether all is as it should be, once it is accepted if it is.
+/// Whether all is as it should be.
 fn is_passed(review: &Review, is_accepted: bool) -> bool {
-    let passes = |swatch: &Swatch| match swatch.outcome {
-        Outcome::Same => true,
-        Outcome::Changed(_) | Outcome::New | Outcome::Orphan => is_accepted,
-        Outcome::Broken => false,
-    };
+    let passes = |swatch: &Swatch| swatch.outcome == Outcome::Same || is_accepted && swatch.outcome.is_acceptable();
     review.faults.is_empty() && review.swatches.iter().all(passes)
 }
 

@@ -1,6 +1,6 @@
 //! Reviews as Markdown, for a comment in a review system. Pictures lie beside it, named by [`picture_file`].
 
-use super::review::{Outcome, Review, Swatch, picture_file};
+use super::review::{Review, Swatch, picture_file};
 
 /// The text.
 #[must_use]
@@ -11,13 +11,12 @@ pub fn write(reviews: &[Review]) -> String {
         for fault in &review.faults {
             text.push_str(&format!("\n- **fault**: {}\n", escaped(fault)));
         }
-        let shown: Vec<&Swatch> = review.swatches.iter().filter(|swatch| swatch.outcome != Outcome::Same).collect();
-        for swatch in &shown {
+        for swatch in review.to_review() {
             text.push_str(&section(swatch));
         }
         if review.is_same() {
             text.push_str("\nEvery swatch looks as it was pinned.\n");
-        } else if shown.iter().any(|swatch| swatch.outcome != Outcome::Broken) {
+        } else if review.is_acceptable() {
             text.push_str("\n`kake test --accept` pins what is there now.\n");
         }
         text.push('\n');
@@ -29,11 +28,11 @@ pub fn write(reviews: &[Review]) -> String {
 
 fn section(swatch: &Swatch) -> String {
     let mut text = format!(
-        "\n## {}: {}\n\n`{}`: {}.\n",
+        "\n## {}: {}\n\n{} `{}`\n",
         escaped(&swatch.name),
         swatch.outcome.word(),
-        swatch.file.replace('`', "'"),
-        swatch.outcome
+        swatch.outcome.sentence(),
+        swatch.file.replace('`', "'")
     );
     let pictures: Vec<(&str, String)> =
         swatch.pictures.named().map(|(kind, _)| (kind, picture_file(&swatch.name, kind))).collect();

@@ -9,7 +9,7 @@ use super::review::{Outcome, Review, Swatch};
 /// The style of the page.
 const STYLE: &str = include_str!("review.css");
 
-/// The page. Swatches that are not the same come first.
+/// The page. What is to be judged comes first.
 #[must_use]
 pub fn write(reviews: &[Review]) -> String {
     let titles: Vec<&str> = reviews.iter().map(|review| review.title.as_str()).collect();
@@ -35,22 +35,21 @@ pub fn write(reviews: &[Review]) -> String {
 }
 
 fn library(review: &Review) -> Markup {
-    let (same, other): (Vec<&Swatch>, Vec<&Swatch>) =
-        review.swatches.iter().partition(|swatch| swatch.outcome == Outcome::Same);
+    let same: Vec<&Swatch> = review.swatches.iter().filter(|swatch| swatch.outcome == Outcome::Same).collect();
     html! {
         header {
             h1 { (review.title) }
             p { (review.summary()) "." }
             @if review.is_same() {
                 p.hint { "Every swatch looks as it was pinned." }
-            } @else if other.iter().any(|swatch| swatch.outcome != Outcome::Broken) {
+            } @else if review.is_acceptable() {
                 p.hint { code { "kake test --accept" } " pins what is there now." }
             }
         }
         @for fault in &review.faults {
             p.fault role="alert" { (fault) }
         }
-        @for swatch in &other { (section(swatch)) }
+        @for swatch in review.to_review() { (section(swatch)) }
         @if !same.is_empty() {
             section.same {
                 h2 { "Same as pinned" }
@@ -75,7 +74,7 @@ fn section(swatch: &Swatch) -> Markup {
                 span.outcome.(swatch.outcome.word()) { (swatch.outcome.word()) }
                 " " (swatch.name)
             }
-            p { (swatch.outcome) "." span.file { (swatch.file) } }
+            p { (swatch.outcome.sentence()) " " span.file { (swatch.file) } }
             @if swatch.pictures.named().next().is_some() {
                 div.pictures {
                     @for (kind, picture) in swatch.pictures.named() {

@@ -62,10 +62,15 @@ impl Figure {
     }
 }
 
-/// As TOML has it.
+/// As TOML has it; counts without a point.
 impl fmt::Display for Figure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:?}", self.0)
+        const SIX_DIGITS: f64 = 1e6;
+        if self.0.fract() == 0.0 && self.0.abs() < SIX_DIGITS {
+            write!(f, "{}", self.0)
+        } else {
+            write!(f, "{:?}", self.0)
+        }
     }
 }
 
@@ -273,7 +278,7 @@ mod tests {
 
         [paint."the \"night\"\n夜"]
         c_cov = 0.987654
-        density = 0.0
+        density = 0
         xi = 1e-9
 
         [warnings]

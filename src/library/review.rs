@@ -88,7 +88,26 @@ impl Outcome {
     }
 }
 
-/// In a sentence; nothing for what is the same.
+impl Outcome {
+    /// As a sentence of its own.
+    #[must_use]
+    pub fn sentence(self) -> String {
+        let words = self.to_string();
+        let mut letters = words.chars();
+        letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
+    }
+
+    /// Whether accepting pins it, or removes its pin.
+    #[must_use]
+    pub fn is_acceptable(self) -> bool {
+        match self {
+            Self::Changed(_) | Self::New | Self::Orphan => true,
+            Self::Same | Self::Broken => false,
+        }
+    }
+}
+
+/// In words that go on after a colon; nothing for what is the same.
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -149,6 +168,27 @@ impl Review {
         self.faults.is_empty() && self.swatches.iter().all(|swatch| swatch.outcome == Outcome::Same)
     }
 
+    /// Whether there is something that accepting changes.
+    #[must_use]
+    pub fn is_acceptable(&self) -> bool {
+        self.swatches.iter().any(|swatch| swatch.outcome.is_acceptable())
+    }
+
+    /// What is not as it was pinned: what is broken first, then what changed, what is new and what is gone.
+    #[must_use]
+    pub fn to_review(&self) -> Vec<&Swatch> {
+        let rank = |swatch: &&Swatch| match swatch.outcome {
+            Outcome::Broken => 0,
+            Outcome::Changed(_) => 1,
+            Outcome::New => 2,
+            Outcome::Orphan => 3,
+            Outcome::Same => 4,
+        };
+        let mut found: Vec<&Swatch> = self.swatches.iter().filter(|swatch| swatch.outcome != Outcome::Same).collect();
+        found.sort_by_key(rank);
+        found
+    }
+
     /// How many swatches there are of each outcome: `5 swatches: 3 same, 1 changed, 1 broken`.
     #[must_use]
     pub fn summary(&self) -> String {
@@ -168,4 +208,66 @@ impl Review {
 #[must_use]
 pub fn picture_file(swatch: &str, kind: &str) -> String {
     format!("pictures/{}-{kind}.png", swatch.replace('/', "-"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::library::{junit, markdown, page};
+
+    fn swatch(name: &str, outcome: Outcome) -> Swatch {
+        let change = pin::Change { what: "a|b: c_cov".to_owned(), old: None, new: Some("0.5".to_owned()) };
+        Swatch {
+            name: name.to_owned(),
+            file: format!("swatches/{name}.kake"),
+            outcome,
+            changes: vec![change],
+            pictures: Pictures { old: None, new: Some(b"picture".to_vec()), difference: None },
+            said: "```\n<script>alert(1)</script>\u{1b}[31m\n".to_owned(),
+        }
+    }
+
+    fn review() -> Review {
+        let seen = Outcome::Changed(Reason::Seen { pixels: 1, of: 4096 });
+        Review {
+            title: "ink <b> 0.1.0".to_owned(),
+            swatches: vec![
+                swatch("a", Outcome::Same),
+                swatch("b*_<i>", seen),
+                swatch("c", Outcome::Orphan),
+                swatch("d/e", Outcome::Broken),
+            ],
+            faults: vec!["the dependency `x` is not locked".to_owned()],
+        }
+    }
+
+    #[test]
+    fn what_is_broken_comes_first() {
+        let names: Vec<String> = review().to_review().iter().map(|swatch| swatch.name.clone()).collect();
+        assert_eq!(names, ["d/e", "b*_<i>", "c"]);
+        assert_eq!(review().summary(), "4 swatches: 1 same, 1 changed, 1 broken, 1 orphan");
+        assert_eq!(review().swatches[1].outcome.sentence(), "1 of 4,096 pixels differs (0.0 %).");
+        assert!(!review().is_same() && review().is_acceptable());
+    }
+
+    #[test]
+    fn markdown_takes_names_as_they_are() {
+        insta::assert_snapshot!(markdown::write(&[review()]));
+    }
+
+    #[test]
+    fn pages_take_names_as_they_are_and_need_nothing_else() {
+        let page = page::write(&[review()]);
+        for hostile in ["<script", "<b>", "<i>", "http:", "https:", "<link"] {
+            assert!(!page.contains(hostile), "{hostile}");
+        }
+        assert!(page.contains("&lt;script&gt;") && page.contains("data:image/png;base64,cGljdHVyZQ=="));
+    }
+
+    #[test]
+    fn build_servers_are_told() {
+        let xml = junit::write(&[review()]).expect("it can be written");
+        usvg::roxmltree::Document::parse(&xml).expect("it is XML");
+        insta::assert_snapshot!(xml);
+    }
 }

@@ -72,7 +72,9 @@ pub(super) fn page(library: &Library, review: &Review) -> Ended {
     match put(&library.root, &[(PAGE.to_owned(), page::write(std::slice::from_ref(review)).as_bytes())]) {
         Ok(()) => {
             eprintln!("look at {}", library.root.join(PAGE).display());
-            eprintln!("`kake test --accept` pins what is there now");
+            if review.is_acceptable() {
+                eprintln!("`kake test --accept` pins what is there now");
+            }
             Ended::Done
         }
         Err(error) => failed(&library.root, error),
