@@ -15,13 +15,14 @@ use kakeami::lower::LowerConfig;
 use kakeami::{Config, compile};
 
 /// The documents with scenes in them.
-const DOCUMENTS: [&str; 9] = [
+const DOCUMENTS: [&str; 10] = [
     "README.md",
     "docs/language.md",
     "docs/gallery.md",
     "docs/angles.md",
     "docs/experiments.md",
     "docs/grain.md",
+    "docs/libraries.md",
     "docs/metrics.md",
     "docs/paper.md",
     "docs/statistics.md",

@@ -9,7 +9,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::diag::{Code, Diagnostic, sort};
+use crate::diag::{Code, Diagnostic, Severity, sort};
 use crate::library::lock::{Change, ContentHash, Locked};
 use crate::library::{Dependency, LOCK, Lock, MANIFEST, Manifest};
 use crate::loader::{self, UnknownDependency};
@@ -169,7 +169,7 @@ impl Packages {
         let hint = "`kake lock` locks what is there now";
         let warning = |span: Option<Span>, message: String| {
             let diagnostic = Diagnostic::without_span(Code::Lock, message).hint(hint);
-            Diagnostic { span, severity: crate::diag::Severity::Warning, ..diagnostic }
+            Diagnostic { span, severity: Severity::Warning, ..diagnostic }
         };
         let text = match read_below(&root.folder, LOCK) {
             Ok(bytes) => bytes,
@@ -180,7 +180,13 @@ impl Packages {
             .and_then(|(source, text)| Lock::parse(source, &text));
         let was = match parsed {
             Ok(lock) => lock,
-            Err(diagnostics) => return (diagnostics, sources),
+            Err(diagnostics) => {
+                let warned = diagnostics.into_iter().map(|diagnostic| {
+                    let hint = diagnostic.hint.clone().or_else(|| Some("`kake lock` writes the file anew".to_owned()));
+                    Diagnostic { severity: Severity::Warning, hint, ..diagnostic }
+                });
+                return (warned.collect(), sources);
+            }
         };
         let diagnostics = match self.lock() {
             Ok(now) => {

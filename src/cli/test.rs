@@ -14,7 +14,7 @@ use crate::library::LOCK;
 use crate::library::review::{Outcome, Review, Swatch};
 
 use super::files::{OpenError, print};
-use super::packages::Packages;
+use super::packages::{Faults, Packages};
 use super::{Ended, report};
 use find::{Library, find};
 use judge::{Judged, judge, orphans};
@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &TestArgs) -> Ended {
     for library in &libraries {
         let (ended, review) = test(library, arguments);
         worst = worse(worst, ended);
-        reviews.extend(review);
+        reviews.push(review);
     }
     if let Some(folder) = &arguments.report {
         worst = worse(worst, keep::report(folder, &mut reviews));
@@ -74,10 +74,14 @@ fn worse(a: Ended, b: Ended) -> Ended {
 }
 
 /// Tests one library, prints what was found and accepts it if asked.
-fn test(library: &Library, arguments: &TestArgs) -> (Ended, Option<Review>) {
+fn test(library: &Library, arguments: &TestArgs) -> (Ended, Review) {
     let packages = match Packages::find(&library.root) {
         Ok(packages) => packages,
-        Err(faults) => return (report::cannot_open(OpenError::Manifest(faults)), None),
+        Err(Faults { diagnostics, sources }) => {
+            let faults = diagnostics.iter().map(|diagnostic| diagnostic.message.clone()).collect();
+            report::cannot_open(OpenError::Manifest(Faults { diagnostics, sources }));
+            return (Ended::Fault, Review { title: library.folder(), swatches: Vec::new(), faults });
+        }
     };
     let mut faults = locks(library, &packages);
     let mut judged: Vec<Judged> = library.swatches.par_iter().map(|file| judge(library, file)).collect();
@@ -98,7 +102,7 @@ fn test(library: &Library, arguments: &TestArgs) -> (Ended, Option<Review>) {
     let printed = print(words::text(&review, is_accepted).as_bytes());
     let kept = if arguments.accept { accepted } else { keep::page(library, &review) };
     let ended = if is_passed(&review, is_accepted) { Ended::Done } else { Ended::Fault };
-    (worse(worse(ended, kept), printed), Some(review))
+    (worse(worse(ended, kept), printed), review)
 }
 
 /// Whether all is as it should be.

@@ -40,8 +40,13 @@ impl Library {
     pub(super) fn title(&self, packages: &Packages) -> String {
         match packages.get("").and_then(|package| package.manifest.library.as_ref()) {
             Some(library) => format!("{} {}", library.name, library.version),
-            None => self.root.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            None => self.folder(),
         }
+    }
+
+    /// The name of its folder.
+    pub(super) fn folder(&self) -> String {
+        self.root.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 }
 
