@@ -41,6 +41,7 @@ pub mod pass;
 pub mod random;
 pub mod region;
 pub mod scene;
+pub mod sheet;
 pub mod span;
 pub mod stage;
 pub mod stats;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::support::here;
 
 /// What each part may know of.
-const ARROWS: [(&str, &[&str]); 23] = [
+const ARROWS: [(&str, &[&str]); 24] = [
     ("span", &[]),
     ("geom", &[]),
     ("random", &[]),
@@ -26,7 +26,8 @@ const ARROWS: [(&str, &[&str]); 23] = [
     ("stats", &[]),
     ("chart", &["geom"]),
     ("illustrate", &["chart", "metrics"]),
-    ("back", &["drawing", "geom", "scene"]),
+    ("sheet", &["drawing", "geom", "scene"]),
+    ("back", &["drawing", "geom", "scene", "sheet"]),
     ("lower", &["syntax", "scene", "region", "field", "loader", "diag", "span", "geom", "random"]),
     (
         "wedge",

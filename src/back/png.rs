@@ -14,7 +14,7 @@ use ::png::{
 
 use super::metadata::{KEYWORD, Metadata};
 use super::raster::{Format, Pixels, render};
-use crate::drawing::Drawing;
+use crate::drawing::{Drawing, Page};
 use crate::geom::Length;
 use crate::scene::Colour;
 
@@ -61,11 +61,21 @@ const SMALL: u64 = 16 << 20;
 /// # Errors
 /// What `out` answers, and sizes that the format does not know.
 pub fn write(drawing: &Drawing, metadata: Option<&Metadata>, out: &mut dyn Write) -> Result<(), PngError> {
-    let [width, height] = drawing.page.pixels;
+    encode(&render(drawing), &drawing.page, metadata, out)
+}
+
+/// Writes the pixels of a page.
+pub(super) fn encode(
+    pixels: &Pixels,
+    page: &Page,
+    metadata: Option<&Metadata>,
+    out: &mut dyn Write,
+) -> Result<(), PngError> {
+    let [width, height] = page.pixels;
     let mut encoder = Encoder::new(&mut *out, width, height);
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
     // Pixels per metre; the format has no other unit.
-    let per_metre = (drawing.page.dpi * (1000.0 / Length::MM_PER_INCH)).round() as u32;
+    let per_metre = (page.dpi * (1000.0 / Length::MM_PER_INCH)).round() as u32;
     encoder.set_pixel_dims(Some(PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter }));
     if u64::from(width) * u64::from(height) <= SMALL {
         // Line art is long runs of paper and ink, which filters only break up.
@@ -74,13 +84,12 @@ pub fn write(drawing: &Drawing, metadata: Option<&Metadata>, out: &mut dyn Write
     } else {
         encoder.set_compression(Compression::Fast);
     }
-    let pixels = render(drawing);
     let data = match &pixels.format {
-        Format::Grey => plain(&mut encoder, ColorType::Grayscale, &pixels),
-        Format::GreyAlpha => plain(&mut encoder, ColorType::GrayscaleAlpha, &pixels),
-        Format::Rgb => plain(&mut encoder, ColorType::Rgb, &pixels),
-        Format::Rgba => plain(&mut encoder, ColorType::Rgba, &pixels),
-        Format::Indexed(palette) => indexed(&mut encoder, palette, &pixels),
+        Format::Grey => plain(&mut encoder, ColorType::Grayscale, pixels),
+        Format::GreyAlpha => plain(&mut encoder, ColorType::GrayscaleAlpha, pixels),
+        Format::Rgb => plain(&mut encoder, ColorType::Rgb, pixels),
+        Format::Rgba => plain(&mut encoder, ColorType::Rgba, pixels),
+        Format::Indexed(palette) => indexed(&mut encoder, palette, pixels),
     };
     let mut writer = encoder.write_header()?;
     if let Some(metadata) = metadata {
