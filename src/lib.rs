@@ -31,6 +31,7 @@ pub mod diag;
 pub mod drawing;
 pub mod experiment;
 pub mod field;
+pub mod gallery;
 pub mod geom;
 pub mod illustrate;
 pub mod loader;
@@ -46,6 +47,7 @@ pub mod span;
 pub mod stage;
 pub mod stats;
 pub mod stop;
+pub mod swatch;
 pub mod syntax;
 pub mod wedge;
 

@@ -76,10 +76,8 @@ impl Contact {
 
 /// Left, top, right and bottom of a place in pixels.
 fn corners(page: &Page, place: &Place) -> [usize; 4] {
-    let [across, down] = [
-        f64::from(page.pixels[0]) / page.width.to_mm(),
-        f64::from(page.pixels[1]) / page.height.to_mm(),
-    ];
+    let [across, down] =
+        [f64::from(page.pixels[0]) / page.width.to_mm(), f64::from(page.pixels[1]) / page.height.to_mm()];
     let at = |mm: f64, scale: f64| (mm * scale).round().max(0.0) as usize;
     let area = &place.area;
     [at(area.min.x, across), at(area.min.y, down), at(area.max.x, across), at(area.max.y, down)]

@@ -174,8 +174,11 @@ fn write_paper(drawing: &Drawing, ids: &str, out: &mut dyn Write) -> io::Result<
     let page = &drawing.page;
     if let Some(paper) = page.paper {
         let (width, height) = (number::text(page.width.to_mm()), number::text(page.height.to_mm()));
-        let mut rect =
-            Rectangle::new().set("id", format!("{ids}paper")).set("width", width).set("height", height).set("fill", paper.hex());
+        let mut rect = Rectangle::new()
+            .set("id", format!("{ids}paper"))
+            .set("width", width)
+            .set("height", height)
+            .set("fill", paper.hex());
         if paper.a < 255 {
             rect = rect.set("fill-opacity", opacity(paper));
         }

@@ -12,6 +12,7 @@ mod experiment;
 mod explain;
 mod files;
 mod fmt;
+mod gallery;
 mod ir;
 mod limits;
 mod metrics;
@@ -83,6 +84,8 @@ enum Command {
     Wedge(wedge::WedgeArgs),
     /// Run a scene's experiment: every condition with every seed, measured, analysed and pictured
     Experiment(Box<experiment::ExperimentArgs>),
+    /// Show tones and scenes on a page and a contact sheet
+    Gallery(gallery::GalleryArgs),
     /// Explain a diagnostic's code, or list them all
     Explain(explain::ExplainArgs),
     /// Print a completion script for a shell
@@ -143,6 +146,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Metrics(arguments) => metrics::run(&arguments),
         Command::Wedge(arguments) => wedge::run(&arguments),
         Command::Experiment(arguments) => experiment::run(&arguments),
+        Command::Gallery(arguments) => gallery::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Completions(arguments) => {
             let mut script = Vec::new();

@@ -31,6 +31,9 @@ const LABEL_LINES: usize = 4;
 /// Captions under pictures are wrapped into so many lines each.
 const CAPTION_LINES: usize = 2;
 
+/// Pictures that are as wide have larger captions.
+const WIDE: f64 = 60.0;
+
 /// The width of frames.
 const FRAME: f64 = 0.15;
 
@@ -126,9 +129,14 @@ fn label_lines(row: &Row) -> Vec<(String, f64)> {
     row.label.iter().enumerate().flat_map(wrapped).collect()
 }
 
+/// The size of captions: larger under large pictures.
+fn caption_size(measures: &Measures) -> f64 {
+    if measures.cell[0] >= WIDE { LABEL } else { SMALL }
+}
+
 /// The lines under a picture.
-fn caption_lines(slot: &Slot, most: f64) -> Vec<String> {
-    let wrapped = |text: &String| letters::wrapped(text, Length::mm(SMALL), Length::mm(most), CAPTION_LINES);
+fn caption_lines(slot: &Slot, size: f64, most: f64) -> Vec<String> {
+    let wrapped = |text: &String| letters::wrapped(text, Length::mm(size), Length::mm(most), CAPTION_LINES);
     slot.caption.iter().flat_map(wrapped).collect()
 }
 
@@ -202,10 +210,11 @@ impl Writer {
                 Holds::Words(words) => self.words(words, &area),
             }
             let centre = left + measures.cell[0] / 2.0;
-            let mut y = top + height;
-            for line in caption_lines(slot, measures.cell[0] + GAP / 2.0) {
-                y += if y == top + height { NEAR + SMALL } else { SMALL * LEADING };
-                self.text(line, Point::new(centre, y - SMALL * 0.15), Anchor::Middle, (SMALL, INK));
+            let mut y = top + height + NEAR;
+            let size = caption_size(measures);
+            for line in caption_lines(slot, size, measures.cell[0] + GAP / 2.0) {
+                self.text(line, Point::new(centre, y + size * 0.85), Anchor::Middle, (size, INK));
+                y += size * LEADING;
             }
             lowest = lowest.max(y);
         }
@@ -224,6 +233,14 @@ impl Writer {
             y += SMALL * LEADING;
         }
     }
+}
+
+/// A line in the middle of an area.
+pub(super) fn in_the_middle(area: &Rect, words: &str) -> Text {
+    let size = Length::mm(SMALL);
+    let text = letters::shortened(words, size, Length::mm((area.width() - 2.0 * NEAR).max(1.0)));
+    let at = Point::new(area.centre().x, area.centre().y + SMALL * 0.35);
+    Text { text, at, anchor: Anchor::Middle, size, ink: GREY }
 }
 
 /// The left end of a column.
@@ -247,7 +264,8 @@ pub(super) fn frames(areas: &[Rect]) -> Layer {
     let mut layer = Layer::new(Vec::new(), "frames".to_owned(), FAINT);
     let mut strokes = Strokes::new(Length::mm(FRAME), Cap::Butt);
     for area in areas {
-        let corners = area.corners();
+        // Pictures lie within their frames, and cover nothing of them.
+        let corners = area.grown(FRAME / 2.0).corners();
         strokes.polylines.push(corners.into_iter().chain(corners.first().copied()).collect());
     }
     layer.strokes.push(strokes);

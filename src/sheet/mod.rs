@@ -97,6 +97,14 @@ pub struct Place {
     pub area: Rect,
 }
 
+impl Place {
+    /// A line in the middle of it.
+    #[must_use]
+    pub fn says(&self, words: &str) -> Text {
+        layout::in_the_middle(&self.area, words)
+    }
+}
+
 /// A line of text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Text {
