@@ -27,6 +27,7 @@ pub mod back;
 pub mod chart;
 #[doc(hidden)]
 pub mod cli;
+pub mod compare;
 pub mod diag;
 pub mod drawing;
 pub mod experiment;
@@ -34,6 +35,7 @@ pub mod field;
 pub mod gallery;
 pub mod geom;
 pub mod illustrate;
+pub mod library;
 pub mod loader;
 pub mod lower;
 pub mod metrics;

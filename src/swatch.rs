@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::diag;
 use crate::geom::Length;
-use crate::loader::{LoadError, Loader};
+use crate::loader::{LoadError, Loader, UnknownDependency};
 use crate::lower::{LowerConfig, Lowered, lower};
 use crate::pass::place;
 use crate::scene::{Canvas, Paint, Scene, Shape};
@@ -62,6 +62,10 @@ impl Loader for With<'_> {
 
     fn library(&self, name: &str) -> Option<Arc<[u8]>> {
         self.loader.library(name)
+    }
+
+    fn dependency(&self, of: &str, name: &str) -> Result<String, UnknownDependency> {
+        self.loader.dependency(of, name)
     }
 }
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::support::here;
 
 /// What each part may know of.
-const ARROWS: [(&str, &[&str]); 26] = [
+const ARROWS: [(&str, &[&str]); 28] = [
     ("span", &[]),
     ("geom", &[]),
     ("random", &[]),
@@ -28,6 +28,8 @@ const ARROWS: [(&str, &[&str]); 26] = [
     ("illustrate", &["chart", "metrics"]),
     ("sheet", &["drawing", "geom", "scene"]),
     ("back", &["drawing", "geom", "scene", "sheet"]),
+    ("compare", &["back", "drawing", "geom", "metrics", "scene", "stage"]),
+    ("library", &["diag", "loader", "span", "syntax"]),
     ("lower", &["syntax", "scene", "region", "field", "loader", "diag", "span", "geom", "random"]),
     ("swatch", &["diag", "geom", "loader", "lower", "pass", "scene", "span", "syntax"]),
     (
@@ -44,6 +46,7 @@ const ARROWS: [(&str, &[&str]); 26] = [
         &[
             "back",
             "chart",
+            "compare",
             "diag",
             "drawing",
             "experiment",
@@ -51,6 +54,7 @@ const ARROWS: [(&str, &[&str]); 26] = [
             "gallery",
             "geom",
             "illustrate",
+            "library",
             "loader",
             "lower",
             "metrics",

@@ -70,7 +70,7 @@ impl Contact {
     /// # Errors
     /// What `out` answers, and sizes that the format does not know.
     pub fn write(&self, out: &mut dyn Write) -> Result<(), PngError> {
-        png::encode(&self.pixels, &self.page, None, out)
+        png::write_page(&self.pixels, &self.page, None, out)
     }
 }
 

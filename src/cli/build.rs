@@ -107,6 +107,7 @@ pub(super) fn run(arguments: &BuildArgs) -> Ended {
         Ok(opened) => opened,
         Err(error) => return report::cannot_open(error),
     };
+    report::locks(opened.loader.packages());
     if arguments.seeds.is_some() || !arguments.vary.is_empty() || arguments.sheet.is_some() {
         return batch::run(arguments, &opened);
     }

@@ -15,7 +15,9 @@ mod fmt;
 mod gallery;
 mod ir;
 mod limits;
+mod lock;
 mod metrics;
+mod packages;
 mod params;
 mod picture;
 mod progress;
@@ -86,6 +88,8 @@ enum Command {
     Experiment(Box<experiment::ExperimentArgs>),
     /// Show tones and scenes on a page and a contact sheet
     Gallery(gallery::GalleryArgs),
+    /// Lock what a library depends on: writes the hashes of its dependencies into kake.lock
+    Lock(lock::LockArgs),
     /// Explain a diagnostic's code, or list them all
     Explain(explain::ExplainArgs),
     /// Print a completion script for a shell
@@ -147,6 +151,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Wedge(arguments) => wedge::run(&arguments),
         Command::Experiment(arguments) => experiment::run(&arguments),
         Command::Gallery(arguments) => gallery::run(&arguments),
+        Command::Lock(arguments) => lock::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Completions(arguments) => {
             let mut script = Vec::new();

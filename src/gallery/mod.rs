@@ -12,13 +12,14 @@ pub use contact::contact;
 pub use page::{GENERATOR, Page, page};
 
 use std::fmt::{self, Write as _};
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use crate::diag::{Diagnostic, RenderConfig, render};
 use crate::drawing::Drawing;
 use crate::geom::{Length, Point, Rect};
-use crate::loader::Loader;
+use crate::loader::{LoadError, Loader, UnknownDependency};
 use crate::lower::{LowerConfig, Lowered, lower};
 use crate::scene::{Canvas, Param, Shape};
 use crate::span::Sources;
@@ -178,15 +179,19 @@ struct Above<'a> {
 const ABOVE: &str = "above.kake";
 
 impl Loader for Above<'_> {
-    fn load(&self, path: &str) -> Result<std::sync::Arc<[u8]>, crate::loader::LoadError> {
+    fn load(&self, path: &str) -> Result<Arc<[u8]>, LoadError> {
         match path == ABOVE {
             true => Ok(format!("import {}\n", crate::swatch::quoted(self.path)).into_bytes().into()),
             false => self.loader.load(path),
         }
     }
 
-    fn library(&self, name: &str) -> Option<std::sync::Arc<[u8]>> {
+    fn library(&self, name: &str) -> Option<Arc<[u8]>> {
         self.loader.library(name)
+    }
+
+    fn dependency(&self, of: &str, name: &str) -> Result<String, UnknownDependency> {
+        self.loader.dependency(of, name)
     }
 }
 
