@@ -24,6 +24,7 @@
 //! terminal, no clock and, but for a [`loader::Loader`], no file.
 
 pub mod back;
+pub mod bundle;
 pub mod chart;
 #[doc(hidden)]
 pub mod cli;

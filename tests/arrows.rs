@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::support::here;
 
 /// What each part may know of.
-const ARROWS: [(&str, &[&str]); 28] = [
+const ARROWS: [(&str, &[&str]); 29] = [
     ("span", &[]),
     ("geom", &[]),
     ("random", &[]),
@@ -26,6 +26,7 @@ const ARROWS: [(&str, &[&str]); 28] = [
     ("stats", &[]),
     ("chart", &["geom"]),
     ("illustrate", &["chart", "metrics"]),
+    ("bundle", &["loader"]),
     ("sheet", &["drawing", "geom", "scene"]),
     ("back", &["drawing", "geom", "scene", "sheet"]),
     ("compare", &["back", "drawing", "geom", "metrics", "scene", "stage"]),
@@ -45,6 +46,7 @@ const ARROWS: [(&str, &[&str]); 28] = [
         "cli",
         &[
             "back",
+            "bundle",
             "chart",
             "compare",
             "diag",

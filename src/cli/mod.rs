@@ -6,6 +6,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod build;
+mod bundle;
 mod check;
 mod convert;
 mod experiment;
@@ -86,6 +87,8 @@ enum Command {
     Wedge(wedge::WedgeArgs),
     /// Run a scene's experiment: every condition with every seed, measured, analysed and pictured
     Experiment(Box<experiment::ExperimentArgs>),
+    /// Put a scene and all that it reads into one file, or take such a file apart
+    Bundle(bundle::BundleArgs),
     /// Show tones and scenes on a page and a contact sheet
     Gallery(gallery::GalleryArgs),
     /// Lock what a library depends on: writes the hashes of its dependencies into kake.lock
@@ -150,6 +153,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Metrics(arguments) => metrics::run(&arguments),
         Command::Wedge(arguments) => wedge::run(&arguments),
         Command::Experiment(arguments) => experiment::run(&arguments),
+        Command::Bundle(arguments) => bundle::run(&arguments),
         Command::Gallery(arguments) => gallery::run(&arguments),
         Command::Lock(arguments) => lock::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
