@@ -11,7 +11,7 @@ use crate::geom::Length;
 use crate::loader::{LoadError, Loader, UnknownDependency};
 use crate::lower::{LowerConfig, Lowered, lower};
 use crate::pass::place;
-use crate::scene::{Canvas, Paint, Scene, Shape};
+use crate::scene::{Canvas, Colour, Paint, Scene, Shape};
 use crate::span::{Sources, Syntax};
 use crate::syntax::ast::{Document, StatementKind};
 use crate::syntax::{self, kake};
@@ -35,8 +35,19 @@ pub struct Swatch<'a> {
     pub config: &'a LowerConfig,
     /// The statements that import it; see [`imports`].
     pub imports: String,
-    /// The canvas from which all but the size is taken.
+    /// The canvas from which all but the size and the colours is taken.
     pub canvas: &'a Canvas,
+    /// Its colours.
+    pub colours: Colours,
+}
+
+/// The colours of a swatch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Colours {
+    /// Black on white.
+    Plain,
+    /// Those of the canvas.
+    Own,
 }
 
 /// What the tiles of a tone are like.
@@ -46,6 +57,8 @@ pub struct Tiling {
     pub spacing: Length,
     /// What they look like.
     pub shape: Shape,
+    /// Whether the tone asks for as much everywhere.
+    pub is_even: bool,
 }
 
 /// Files with one more, which exists nowhere else.
@@ -92,8 +105,15 @@ impl Swatch<'_> {
         let Canvas { dpi, unit, gain, .. } = self.canvas;
         let (unit, gain) = (unit.to_mm(), gain.to_mm());
         let (width, height) = (width.to_mm(), height.to_mm());
+        let colours = match self.colours {
+            Colours::Plain => String::new(),
+            Colours::Own => {
+                let paper = self.canvas.paper.map_or_else(|| "none".to_owned(), written);
+                format!(" paper: {paper} ink: {}", written(self.canvas.ink))
+            }
+        };
         let text = format!(
-            "{}canvas {{ size: ({width:.6}mm, {height:.6}mm) dpi: {dpi} unit: {unit}mm gain: {gain}mm }}\n\
+            "{}canvas {{ size: ({width:.6}mm, {height:.6}mm) dpi: {dpi} unit: {unit}mm gain: {gain}mm{colours} }}\n\
              paint canvas with {tone} as \"{}\"\n",
             self.imports, self.name,
         );
@@ -111,7 +131,11 @@ impl Swatch<'_> {
         let mut trial = self.lower(tone, [TRIAL; 2]);
         let Some((paint, canvas)) = first_paint(trial.scene.as_ref()) else { return Err(Box::new(trial)) };
         match place::place(paint, canvas, &self.config.limits) {
-            Ok(sites) => Ok(Tiling { spacing: Length::mm(sites.spacing), shape: paint.tone.shape.clone() }),
+            Ok(sites) => Ok(Tiling {
+                spacing: Length::mm(sites.spacing),
+                shape: paint.tone.shape.clone(),
+                is_even: paint.tone.asked.field().as_constant().is_some(),
+            }),
             Err(diagnostic) => {
                 trial.diagnostics.push(diagnostic);
                 diag::sort(&mut trial.diagnostics);
@@ -160,6 +184,11 @@ pub fn imports(path: &str, document: Option<&Document>) -> String {
         }
     }
     text
+}
+
+/// A colour as it is written in a scene.
+fn written(colour: Colour) -> String {
+    if colour.a == 255 { colour.hex() } else { format!("{}{:02x}", colour.hex(), colour.a) }
 }
 
 /// A string of the language.

@@ -17,7 +17,7 @@ use crate::pass::draw::{Assembly, Setting};
 use crate::region::Region;
 use crate::scene::{Asked, Blend, Canvas, Colour, Darkness, Depth, Paint, Range};
 use crate::span::{Sources, Syntax};
-use crate::swatch::{Swatch, first_paint, imports, read, statements};
+use crate::swatch::{Colours, Swatch, first_paint, imports, read, statements};
 use crate::syntax::ast::{Document, Expr, ExprKind, Parameter, StatementKind};
 use crate::syntax::kake;
 
@@ -128,6 +128,7 @@ pub fn wedge(path: &str, loader: &dyn Loader, tone: Option<&str>, config: &Wedge
         config: &config.lower,
         imports: imports(path, document.as_ref()),
         canvas: &canvas,
+        colours: Colours::Plain,
     };
     // The size of patches follows from the distance of tiles, which only the tone knows.
     let spacing = match swatch.tiles(&completed) {

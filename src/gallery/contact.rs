@@ -4,7 +4,7 @@ use crate::drawing::Drawing;
 use crate::geom::Length;
 use crate::sheet::{Grid, Holds, Row, Scale, Sheet, Slot};
 
-use super::{Lacking, Module, Shown};
+use super::{Lacking, Module};
 
 /// The longest side of a picture on the sheet.
 const SIDE: Length = Length::mm(48.0);
@@ -20,56 +20,66 @@ const LONGEST: usize = 140;
 pub fn contact<'a>(title: &str, modules: &'a [Module]) -> (Sheet, Vec<&'a Drawing>) {
     let longest = modules.iter().flat_map(|module| &module.tones).map(|tone| tone.swatches.len()).max().unwrap_or(0);
     let columns = longest.max(COLUMNS);
-    let mut rows = Vec::new();
-    let mut pictures = Vec::new();
-    for module in modules {
+    let (mut rows, mut pictures) = (Vec::new(), Vec::new());
+    for module in modules.iter().filter(|module| !module.tones.is_empty()) {
         let first = rows.len();
-        let mut single: Vec<Slot> = Vec::new();
-        let mut alone: Vec<&Drawing> = Vec::new();
+        let mut alone = Side::default();
         for tone in &module.tones {
-            let slot = |shown: &Shown, caption: String| slot(&tone.name, caption, shown.picture.as_ref());
             if tone.is_series {
                 let label = std::iter::once(tone.name.clone()).chain(tone.doc.as_deref().map(summary)).collect();
-                let slots = tone.swatches.iter().map(|shown| slot(shown, shown.label.clone())).collect();
-                rows.push(Row { heading: None, label, slots });
-                pictures.extend(tone.swatches.iter().filter_map(|shown| shown.picture.as_ref().ok()));
+                let mut side = Side::default();
+                for shown in &tone.swatches {
+                    side.push(&tone.name, &shown.label, shown.picture.as_ref());
+                }
+                rows.push(Row { heading: None, label, slots: side.slots });
+                pictures.extend(side.pictures);
             } else {
-                single.extend(tone.swatches.iter().map(|shown| slot(shown, tone.name.clone())));
-                alone.extend(tone.swatches.iter().filter_map(|shown| shown.picture.as_ref().ok()));
+                for shown in &tone.swatches {
+                    alone.push(&tone.name, &tone.name, shown.picture.as_ref());
+                }
             }
         }
         if let Some(scene) = &module.scene {
-            single.push(slot(&module.path, module.path.clone(), scene.picture.as_ref()));
-            alone.extend(scene.picture.as_ref().ok());
+            alone.push(&module.path, &module.path, scene.picture.as_ref());
         }
-        rows.extend(single.chunks(columns).map(|slots| Row { slots: slots.to_vec(), ..Row::default() }));
-        pictures.extend(alone);
-        if let Some(row) = rows.get_mut(first) {
-            // A scene alone is called by its caption.
-            row.heading = (!module.tones.is_empty()).then(|| module.path.clone());
+        rows.extend(alone.rows(columns));
+        pictures.extend(alone.pictures);
+        // One file alone is what the title says.
+        if let Some(row) = rows.get_mut(first).filter(|_| module.path != title) {
+            row.heading = Some(module.path.clone());
         }
     }
-    let rows = together(rows, columns);
+    let mut scenes = Side::default();
+    for module in modules.iter().filter(|module| module.tones.is_empty()) {
+        if let Some(scene) = &module.scene {
+            scenes.push(&module.path, &module.path, scene.picture.as_ref());
+        }
+    }
+    let first = rows.len();
+    rows.extend(scenes.rows(columns));
+    pictures.extend(scenes.pictures);
+    if let Some(row) = rows.get_mut(first).filter(|_| first > 0) {
+        row.heading = Some("Scenes".to_owned());
+    }
     (Sheet::new(&Grid { title: title.to_owned(), rows, scale: Scale::Each, side: SIDE, ..Grid::default() }), pictures)
 }
 
-/// Rows without heading or label, one after the other, as few as they need be.
-fn together(rows: Vec<Row>, columns: usize) -> Vec<Row> {
-    let mut joined: Vec<Row> = Vec::new();
-    let is_plain = |row: &Row| row.heading.is_none() && row.label.is_empty();
-    let mut follows = false;
-    for mut row in rows {
-        let plain = is_plain(&row);
-        if let Some(last) = joined.last_mut().filter(|_| plain && follows) {
-            let room = columns.saturating_sub(last.slots.len()).min(row.slots.len());
-            last.slots.extend(row.slots.drain(..room));
-        }
-        if !row.slots.is_empty() || !plain {
-            joined.push(row);
-        }
-        follows = plain;
+/// Pictures side by side.
+#[derive(Default)]
+struct Side<'a> {
+    slots: Vec<Slot>,
+    pictures: Vec<&'a Drawing>,
+}
+
+impl<'a> Side<'a> {
+    fn push(&mut self, name: &str, caption: &str, picture: Result<&'a Drawing, &Lacking>) {
+        self.slots.push(slot(name, caption.to_owned(), picture));
+        self.pictures.extend(picture.ok());
     }
-    joined
+
+    fn rows(&self, columns: usize) -> impl Iterator<Item = Row> {
+        self.slots.chunks(columns).map(|slots| Row { slots: slots.to_vec(), ..Row::default() })
+    }
 }
 
 fn slot(name: &str, caption: String, picture: Result<&Drawing, &Lacking>) -> Slot {

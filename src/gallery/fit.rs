@@ -5,6 +5,14 @@ use crate::syntax::ast::Parameter;
 /// Parameters that ask for a share from 0 to 1.
 pub(super) const SHARES: [&str; 2] = ["darkness", "density"];
 
+/// A tone as it stands behind `with`.
+#[derive(Debug, Clone)]
+pub(super) struct Call {
+    pub(super) text: String,
+    /// Whether a value in it is only thought to fit.
+    pub(super) is_guessed: bool,
+}
+
 /// The tone as it stands behind `with`: with what is given, and with values that fit for all parameters that have no default.
 /// `size` is the width and height of the page in millimetres.
 ///
@@ -15,18 +23,23 @@ pub(super) fn call(
     params: &[Parameter],
     given: Option<&(String, String)>,
     size: [f64; 2],
-) -> Result<String, String> {
+) -> Result<Call, String> {
     let mut arguments = Vec::new();
+    let mut is_guessed = false;
     for param in params {
         let name = &param.name.name;
         let value = match given.filter(|(given, _)| given == name) {
             Some((_, value)) => value.clone(),
             None if param.default.is_some() => continue,
-            None => fitting(param, size)?,
+            None => {
+                is_guessed = true;
+                fitting(param, size)?
+            }
         };
         arguments.push(format!("{name}: {value}"));
     }
-    Ok(if arguments.is_empty() { tone.to_owned() } else { format!("{tone}({})", arguments.join(", ")) })
+    let text = if arguments.is_empty() { tone.to_owned() } else { format!("{tone}({})", arguments.join(", ")) };
+    Ok(Call { text, is_guessed })
 }
 
 /// A value for a parameter that has no default.

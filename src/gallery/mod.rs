@@ -8,6 +8,8 @@ mod contact;
 mod fit;
 mod page;
 
+use fit::Call;
+
 pub use contact::contact;
 pub use page::{GENERATOR, Page, page};
 
@@ -23,13 +25,14 @@ use crate::loader::{LoadError, Loader, UnknownDependency};
 use crate::lower::{LowerConfig, Lowered, lower};
 use crate::scene::{Canvas, Param, Shape};
 use crate::span::Sources;
-use crate::swatch::{Swatch, imports, read};
+use crate::swatch::{Colours, Swatch, imports, read};
 use crate::syntax::ast::{self, Document, ExprKind, Statement, StatementKind, Unit};
 use crate::syntax::format;
 use crate::{Config, compile};
 
-/// A swatch is so many spacings of its tiles wide.
+/// A swatch is so many spacings of its tiles wide, and twice as many where the tone is darker in one place than in another.
 const SPACINGS: f64 = 7.0;
+const UNEVEN_SPACINGS: f64 = 14.0;
 /// It shows about so much of the length of its longest stamps.
 const OF_STAMPS: f64 = 0.95;
 /// But its width is no less and no more than this, in millimetres.
@@ -263,6 +266,16 @@ fn type_of(expr: &ast::Expr) -> Option<String> {
 /// A parameter with the value that a swatch is drawn with.
 type Given = Option<(String, String)>;
 
+impl Call {
+    /// Why a tone that is called so is not drawn: where a value was only thought to fit, nobody is at fault.
+    fn reason(&self, diagnostics: &[Diagnostic]) -> Lacking {
+        match (reason(diagnostics), self.is_guessed) {
+            (Lacking::Fault(words), true) => Lacking::Value(format!("not with values that seemed to fit: {words}")),
+            (lacking, _) => lacking,
+        }
+    }
+}
+
 /// Draws the swatches of one tone.
 struct Maker<'a> {
     path: &'a str,
@@ -293,16 +306,29 @@ impl Maker<'_> {
                 Err(why) => shown.push((label, Err(why))),
             }
         }
+        // Where nothing is known to fit, once is enough to say so.
+        if shown.iter().all(|(_, given)| matches!(given, Err(Lacking::Value(_)))) {
+            shown.truncate(1);
+            shown.iter_mut().for_each(|(label, _)| label.clear());
+            return (shown.into_iter().map(|given| self.lacking(given)).collect(), false);
+        }
         let width = widths.into_iter().fold(WIDTHS[0], f64::max);
         let draw = |(label, given): (String, Result<Given, Lacking>)| {
             let called = given.and_then(|given| self.call(params, given.as_ref(), width));
             let picture = called.clone().and_then(|call| self.draw(&call, width));
-            Shown { label, call: called.unwrap_or_else(|_| format!("{}(…)", self.tone)), picture }
+            let call = called.map_or_else(|_| format!("{}(…)", self.tone), |call| call.text);
+            Shown { label, call, picture }
         };
         (shown.into_iter().map(draw).collect(), is_series)
     }
 
-    fn call(&self, params: &[ast::Parameter], given: Option<&(String, String)>, width: f64) -> Result<String, Lacking> {
+    /// A swatch that nothing was given for.
+    fn lacking(&self, (label, given): (String, Result<Given, Lacking>)) -> Shown {
+        let why = given.err().unwrap_or_else(|| Lacking::Value(String::new()));
+        Shown { label, call: format!("{}(…)", self.tone), picture: Err(why) }
+    }
+
+    fn call(&self, params: &[ast::Parameter], given: Option<&(String, String)>, width: f64) -> Result<Call, Lacking> {
         fit::call(self.tone, params, given, [width, width * HEIGHT]).map_err(Lacking::Value)
     }
 
@@ -342,22 +368,24 @@ impl Maker<'_> {
             config: &self.config.lower,
             imports: imports(self.path, self.document),
             canvas,
+            colours: Colours::Own,
         })
     }
 
     /// How wide a swatch has to be for its tiles to be seen, in millimetres.
-    fn width(&self, call: &str) -> Result<f64, Lacking> {
-        let tiles = self.swatch()?.tiles(call).map_err(|lowered| reason(&lowered.diagnostics))?;
+    fn width(&self, call: &Call) -> Result<f64, Lacking> {
+        let tiles = self.swatch()?.tiles(&call.text).map_err(|lowered| call.reason(&lowered.diagnostics))?;
         let longest = match &tiles.shape {
             Shape::Stamp { outline, size: None, .. } => longest(outline),
             _ => 0.0,
         };
-        Ok((SPACINGS * tiles.spacing.to_mm()).max(OF_STAMPS * longest).clamp(WIDTHS[0], WIDTHS[1]))
+        let spacings = if tiles.is_even { SPACINGS } else { UNEVEN_SPACINGS };
+        Ok((spacings * tiles.spacing.to_mm()).max(OF_STAMPS * longest).clamp(WIDTHS[0], WIDTHS[1]))
     }
 
-    fn draw(&self, call: &str, width: f64) -> Result<Drawing, Lacking> {
-        let compiled = self.swatch()?.compile(call, [width, width * HEIGHT].map(Length::mm));
-        compiled.drawing.ok_or_else(|| reason(&compiled.lowered.diagnostics))
+    fn draw(&self, call: &Call, width: f64) -> Result<Drawing, Lacking> {
+        let compiled = self.swatch()?.compile(&call.text, [width, width * HEIGHT].map(Length::mm));
+        compiled.drawing.ok_or_else(|| call.reason(&compiled.lowered.diagnostics))
     }
 }
 

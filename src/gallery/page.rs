@@ -183,9 +183,11 @@ fn inline(text: &str) -> Markup {
 fn article(id: &str, tone: &Tone, import: &str, pictures: &[Option<String>]) -> Markup {
     let call = tone.swatches.first().map_or(tone.name.as_str(), |shown| shown.call.as_str());
     html! {
-        article id=(id) {
-            h3 { a href=(format!("#{id}")) { (tone.name) } }
-            @if let Some(doc) = &tone.doc { (prose(doc)) }
+        article id=(id) class=[(tone.swatches.len() == 1).then_some("single")] {
+            div.says {
+                h3 { a href=(format!("#{id}")) { (tone.name) } }
+                @if let Some(doc) = &tone.doc { (prose(doc)) }
+            }
             div.swatches {
                 @for (i, shown) in tone.swatches.iter().enumerate() {
                     (swatch(tone, shown, pictures.get(i).and_then(Option::as_ref)))
@@ -228,17 +230,18 @@ fn alternative(tone: &Tone, shown: &Shown) -> String {
 }
 
 fn params(params: &[Parameter]) -> Markup {
-    let has_docs = params.iter().any(|param| param.doc.is_some());
     html! {
         table {
-            thead { tr { th { "parameter" } th { "type" } th { "default" } @if has_docs { th { "" } } } }
+            thead { tr { th { "parameter" } th { "type" } th { "default" } } }
             tbody {
                 @for param in params {
                     tr {
-                        th scope="row" { code { (param.name) } }
+                        th scope="row" {
+                            code { (param.name) }
+                            @if let Some(doc) = &param.doc { span.doc { (inline(doc)) } }
+                        }
                         td { (param.ty.as_deref().unwrap_or("\u{2013}")) }
                         td { @match &param.default { Some(default) => code { (default) }, None => span.size { "required" } } }
-                        @if has_docs { td { @if let Some(doc) = &param.doc { (inline(doc)) } } }
                     }
                 }
             }
@@ -276,11 +279,14 @@ fn painted(module: &Module, scene: &Painted, picture: Option<&String>) -> Markup
 fn settable(params: &[Param]) -> Markup {
     html! {
         table {
-            thead { tr { th { "parameter" } th { "type" } th { "default" } th { "from" } th { "" } } }
+            thead { tr { th { "parameter" } th { "type" } th { "default" } th { "may be" } } }
             tbody {
                 @for param in params {
                     tr {
-                        th scope="row" { code { (param.name) } }
+                        th scope="row" {
+                            code { (param.name) }
+                            @if let Some(doc) = &param.doc { span.doc { (inline(doc)) } }
+                        }
                         td { (param.ty) }
                         td { code { (param.default.text) } }
                         td {
@@ -295,7 +301,6 @@ fn settable(params: &[Param]) -> Markup {
                                 None => "",
                             }
                         }
-                        td { @if let Some(doc) = &param.doc { (inline(doc)) } }
                     }
                 }
             }

@@ -31,6 +31,9 @@ const LABEL_LINES: usize = 4;
 /// Captions under pictures are wrapped into so many lines each.
 const CAPTION_LINES: usize = 2;
 
+/// The height of a place without a picture as a part of its width, at most.
+const WORDS: f64 = 0.75;
+
 /// Pictures that are as wide have larger captions.
 const WIDE: f64 = 60.0;
 
@@ -99,7 +102,7 @@ fn measure(grid: &Grid) -> Measures {
     let longest = widest[0].max(widest[1]);
     let cell = match longest > 0.0 {
         true => widest.map(|of| of * side / longest),
-        false => [side, side * 0.75],
+        false => [side, side * WORDS],
     };
     let labels = grid.rows.iter().flat_map(|row| label_lines(row)).map(|(line, size)| width(&line, size));
     let label = labels.fold(0.0, f64::max);
@@ -250,7 +253,10 @@ fn left(measures: &Measures, column: usize) -> f64 {
 
 /// How large a picture is on the sheet.
 fn size(grid: &Grid, slot: &Slot, measures: &Measures) -> [f64; 2] {
-    let Holds::Picture(size) = slot.holds else { return measures.cell };
+    let Holds::Picture(size) = slot.holds else {
+        let [width, height] = measures.cell;
+        return [width, height.min(width * WORDS)];
+    };
     let size = size.map(Length::to_mm);
     let scale = match grid.scale {
         Scale::Common => measures.scale,
