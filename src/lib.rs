@@ -24,6 +24,7 @@
 //! terminal, no clock and, but for a [`loader::Loader`], no file.
 
 pub mod back;
+pub mod bundle;
 pub mod chart;
 #[doc(hidden)]
 pub mod cli;
@@ -32,6 +33,7 @@ pub mod diag;
 pub mod drawing;
 pub mod experiment;
 pub mod field;
+pub mod gallery;
 pub mod geom;
 pub mod illustrate;
 pub mod library;
@@ -43,10 +45,12 @@ pub mod pass;
 pub mod random;
 pub mod region;
 pub mod scene;
+pub mod sheet;
 pub mod span;
 pub mod stage;
 pub mod stats;
 pub mod stop;
+pub mod swatch;
 pub mod syntax;
 pub mod wedge;
 

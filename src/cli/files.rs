@@ -7,6 +7,7 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
 use crate::back::metadata::{self, Metadata};
+use crate::bundle;
 use crate::library::MANIFEST;
 use crate::loader::{self, LoadError, Loader, UnknownDependency};
 
@@ -26,14 +27,21 @@ pub(super) struct FsLoader {
     /// Files that stand in for those of the root: standard input, or what a picture holds.
     held: BTreeMap<String, Arc<[u8]>>,
     packages: Packages,
-    /// Keys of dependencies that a picture knows by shorter ones.
+    /// Keys of dependencies that a picture or a bundle knows by shorter ones.
     aliases: BTreeMap<String, String>,
+    /// The scene of a bundle, with the file that holds both.
+    bundle: Option<(String, PathBuf)>,
 }
 
 impl FsLoader {
     /// Where the file of a name lies, as texts are called in `Sources`; none for what lies in no file: standard input,
     /// what a picture holds, standard libraries and values from the command line.
     pub(super) fn place(&self, path: &str) -> Option<PathBuf> {
+        if let Some((scene, file)) = &self.bundle
+            && scene == path
+        {
+            return Some(file.clone());
+        }
         if self.held.contains_key(path) || path.starts_with("--") {
             return None;
         }
@@ -146,8 +154,12 @@ pub(super) fn open(scene: &Path, root: Option<&Path>) -> Result<Opened, OpenErro
         let root = root.canonicalize().map_err(|error| failed(root, &error))?;
         let held = BTreeMap::from([(STDIN.to_owned(), Arc::from(text))]);
         let packages = Packages::find(&root).map_err(OpenError::Manifest)?;
-        let loader = FsLoader { root, held, packages, aliases: BTreeMap::new() };
-        return Ok(Opened { loader, path: STDIN.to_owned(), picture: None });
+        let mut loader = FsLoader { root, held, packages, aliases: BTreeMap::new(), bundle: None };
+        let path = match unpack(&mut loader, scene, STDIN)? {
+            Some(path) => path,
+            None => STDIN.to_owned(),
+        };
+        return Ok(Opened { loader, path, picture: None });
     }
     let full = scene.canonicalize().map_err(|error| failed(scene, &error))?;
     let folder = full.parent().unwrap_or(&full).to_owned();
@@ -167,7 +179,8 @@ pub(super) fn open(scene: &Path, root: Option<&Path>) -> Result<Opened, OpenErro
         let path = picture.scene.clone();
         // What is wrong with a library that the picture happens to lie in does not matter to what it holds.
         let packages = Packages::find(&root).unwrap_or_else(|_| Packages::alone(&root));
-        let loader = FsLoader { root, held, packages, aliases: picture.dependencies.clone() };
+        let aliases = picture.dependencies.clone();
+        let loader = FsLoader { root, held, packages, aliases, bundle: None };
         return Ok(Opened { loader, path, picture: Some(picture) });
     }
     let Ok(inside) = full.strip_prefix(&root) else {
@@ -175,9 +188,52 @@ pub(super) fn open(scene: &Path, root: Option<&Path>) -> Result<Opened, OpenErro
         return Err(OpenError::Words(message, Ended::Usage));
     };
     let path = slashed(inside);
-    let packages = Packages::find(&root).map_err(OpenError::Manifest)?;
-    let loader = FsLoader { root, held: BTreeMap::new(), packages, aliases: BTreeMap::new() };
+    let bytes = bundled(&full).map_err(|error| failed(scene, &error))?;
+    let packages = match (&bytes, Packages::find(&root)) {
+        (_, Ok(packages)) => packages,
+        // What is wrong with a library that a bundle happens to lie in does not matter to what it holds.
+        (Some(_), Err(_)) => Packages::alone(&root),
+        (None, Err(faults)) => return Err(OpenError::Manifest(faults)),
+    };
+    let mut loader = FsLoader { root, held: BTreeMap::new(), packages, aliases: BTreeMap::new(), bundle: None };
+    if let Some(bytes) = bytes {
+        loader.held.insert(path.clone(), bytes);
+        if let Some(held) = unpack(&mut loader, scene, &path)? {
+            loader.bundle = Some((held.clone(), full));
+            return Ok(Opened { loader, path: held, picture: None });
+        }
+        loader.held.clear();
+    }
     Ok(Opened { loader, path, picture: None })
+}
+
+/// The bytes of a file that may be a bundle: no other is read before it is asked for.
+fn bundled(full: &Path) -> io::Result<Option<Arc<[u8]>>> {
+    if fs::metadata(full)?.len() > LARGEST {
+        return Ok(None);
+    }
+    let bytes = fs::read(full)?;
+    let is_bundle = std::str::from_utf8(&bytes).is_ok_and(|text| !bundle::split(text).1.is_empty());
+    Ok(is_bundle.then(|| bytes.into()))
+}
+
+/// Where the file that is held under a path is a bundle, holds what is in it too; the path of its scene.
+fn unpack(loader: &mut FsLoader, scene: &Path, path: &str) -> Result<Option<String>, OpenError> {
+    let Some(bytes) = loader.held.get(path).cloned() else { return Ok(None) };
+    let Ok(text) = std::str::from_utf8(&bytes) else { return Ok(None) };
+    let refused = |error| OpenError::Words(format!("{}: {error}", scene.display()), Ended::Fault);
+    let Some(bundle) = bundle::read(text).map_err(refused)? else { return Ok(None) };
+    // The scene is called after the bundle, but lies where it lay among its files.
+    let file = path.rsplit('/').next().unwrap_or(path);
+    let beside =
+        bundle.scene.rsplit_once('/').map_or_else(|| file.to_owned(), |(folder, _)| format!("{folder}/{file}"));
+    let is_taken = bundle.files.iter().any(|(path, _)| *path == beside);
+    let main = if is_taken { bundle.scene } else { beside };
+    loader.held.remove(path);
+    loader.held.extend(bundle.files.into_iter().map(|(path, bytes)| (path, bytes.into())));
+    loader.held.insert(main.clone(), bytes);
+    loader.aliases = bundle.dependencies;
+    Ok(Some(main))
 }
 
 /// A relative path with forward slashes.

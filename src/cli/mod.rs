@@ -6,12 +6,14 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod build;
+mod bundle;
 mod check;
 mod convert;
 mod experiment;
 mod explain;
 mod files;
 mod fmt;
+mod gallery;
 mod ir;
 mod limits;
 mod lock;
@@ -102,6 +104,10 @@ enum Command {
     New(new::NewArgs),
     /// Say which swatches of a library do not look as they were pinned
     Test(test::TestArgs),
+    /// Put a scene and all that it reads into one file, or take such a file apart
+    Bundle(bundle::BundleArgs),
+    /// Show tones and scenes on a page and a contact sheet
+    Gallery(gallery::GalleryArgs),
     /// Lock what a library depends on: writes the hashes of its dependencies into kake.lock
     Lock(lock::LockArgs),
     /// Explain a diagnostic's code, or list them all
@@ -168,6 +174,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Experiment(arguments) => experiment::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Test(arguments) => test::run(&arguments),
+        Command::Bundle(arguments) => bundle::run(&arguments),
+        Command::Gallery(arguments) => gallery::run(&arguments),
         Command::Lock(arguments) => lock::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Completions(arguments) => {
