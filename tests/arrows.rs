@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::support::here;
 
 /// What each part may know of.
-const ARROWS: [(&str, &[&str]); 24] = [
+const ARROWS: [(&str, &[&str]); 25] = [
     ("span", &[]),
     ("geom", &[]),
     ("random", &[]),
@@ -28,6 +28,7 @@ const ARROWS: [(&str, &[&str]); 24] = [
     ("illustrate", &["chart", "metrics"]),
     ("back", &["drawing", "geom", "scene"]),
     ("compare", &["back", "drawing", "geom", "metrics", "scene", "stage"]),
+    ("library", &["diag", "loader", "span", "syntax"]),
     ("lower", &["syntax", "scene", "region", "field", "loader", "diag", "span", "geom", "random"]),
     (
         "wedge",
@@ -46,6 +47,7 @@ const ARROWS: [(&str, &[&str]); 24] = [
             "field",
             "geom",
             "illustrate",
+            "library",
             "loader",
             "lower",
             "metrics",

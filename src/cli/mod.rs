@@ -14,7 +14,9 @@ mod files;
 mod fmt;
 mod ir;
 mod limits;
+mod lock;
 mod metrics;
+mod packages;
 mod params;
 mod picture;
 mod progress;
@@ -83,6 +85,8 @@ enum Command {
     Wedge(wedge::WedgeArgs),
     /// Run a scene's experiment: every condition with every seed, measured, analysed and pictured
     Experiment(Box<experiment::ExperimentArgs>),
+    /// Lock what a library depends on: writes the hashes of its dependencies into kake.lock
+    Lock(lock::LockArgs),
     /// Explain a diagnostic's code, or list them all
     Explain(explain::ExplainArgs),
     /// Print a completion script for a shell
@@ -143,6 +147,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Metrics(arguments) => metrics::run(&arguments),
         Command::Wedge(arguments) => wedge::run(&arguments),
         Command::Experiment(arguments) => experiment::run(&arguments),
+        Command::Lock(arguments) => lock::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Completions(arguments) => {
             let mut script = Vec::new();
