@@ -27,7 +27,7 @@ const ARROWS: [(&str, &[&str]); 25] = [
     ("chart", &["geom"]),
     ("illustrate", &["chart", "metrics"]),
     ("back", &["drawing", "geom", "scene"]),
-    ("compare", &["back", "drawing", "geom", "metrics", "scene", "stage"]),
+    ("compare", &["back", "drawing", "geom", "scene", "stage"]),
     ("library", &["diag", "loader", "span", "syntax"]),
     ("lower", &["syntax", "scene", "region", "field", "loader", "diag", "span", "geom", "random"]),
     (
