@@ -116,6 +116,9 @@ impl Step {
 pub trait Observer {
     /// A step begins, for the paint of this name (empty for the whole scene).
     fn begin(&mut self, step: Step, paint: &str);
+
+    /// The tiles of a paint are found, and are drawn next.
+    fn found(&mut self, _paint: &Paint, _stages: &PaintStages) {}
 }
 
 /// Nobody watches.
@@ -187,6 +190,7 @@ fn draw(
             Item::Outline(outline) => assembly.outline(outline, setting).map(|()| None),
             Item::Ink(ink) => assembly.ink(ink, setting).map(|()| None),
             Item::Paint(paint) => PaintStages::new(paint, canvas, limits, observer, diagnostics).and_then(|stages| {
+                observer.found(paint, &stages);
                 observer.begin(Step::Draw, &paint.name);
                 if !config.overlays.is_empty() {
                     patterns.push(Pattern::new(paint, canvas, &stages.borrow()));

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::support::here;
 
 /// What each part may know of.
-const ARROWS: [(&str, &[&str]); 29] = [
+const ARROWS: &[(&str, &[&str])] = &[
     ("span", &[]),
     ("geom", &[]),
     ("random", &[]),

@@ -9,6 +9,7 @@ mod cli;
 mod codes;
 mod darkness;
 mod determinism;
+mod diff;
 mod documents;
 mod examples;
 mod experiment;

@@ -15,7 +15,7 @@ use super::Ended;
 use super::packages::{Faults, Packages, is_foreign};
 
 /// The largest file that is read.
-const LARGEST: u64 = 1 << 30;
+pub(super) const LARGEST: u64 = 1 << 30;
 
 /// What a scene read from standard input is called.
 const STDIN: &str = "stdin.kake";
@@ -34,6 +34,12 @@ pub(super) struct FsLoader {
 }
 
 impl FsLoader {
+    /// Of a root folder, in which files that are held stand in for those on disk.
+    pub(super) fn at(root: PathBuf, held: BTreeMap<String, Arc<[u8]>>) -> Result<Self, Faults> {
+        let packages = Packages::find(&root)?;
+        Ok(Self { root, held, packages, aliases: BTreeMap::new() })
+    }
+
     /// Where the file of a name lies, as texts are called in `Sources`; none for what lies in no file: standard input,
     /// what a picture holds, standard libraries and values from the command line.
     pub(super) fn place(&self, path: &str) -> Option<PathBuf> {
@@ -167,21 +173,9 @@ pub(super) fn open(scene: &Path, root: Option<&Path>) -> Result<Opened, OpenErro
         Some(root) => root.canonicalize().map_err(|error| failed(root, &error))?,
         None => folder.ancestors().find(|dir| dir.join(MANIFEST).is_file()).unwrap_or(&folder).to_owned(),
     };
-    let extension = full.extension().unwrap_or_default().to_ascii_lowercase();
-    if extension == "svg" || extension == "png" || extension == "pdf" {
+    if is_picture(&full) {
         let bytes = fs::read(&full).map_err(|error| failed(scene, &error))?;
-        let Some(picture) = metadata::extract(&bytes) else {
-            return Err(OpenError::NoScene(scene.display().to_string()));
-        };
-        let texts = picture.sources.iter().map(|(path, text)| (path.clone(), Arc::from(text.as_bytes())));
-        let files = picture.files.iter().map(|(path, bytes)| (path.clone(), Arc::from(&bytes[..])));
-        let held = texts.chain(files).collect();
-        let path = picture.scene.clone();
-        // What is wrong with a library that the picture happens to lie in does not matter to what it holds.
-        let packages = Packages::find(&root).unwrap_or_else(|_| Packages::alone(&root));
-        let aliases = picture.dependencies.clone();
-        let loader = FsLoader { root, held, packages, aliases, bundle: None };
-        return Ok(Opened { loader, path, picture: Some(picture) });
+        return picture(&bytes, &root, scene.display().to_string());
     }
     let Ok(inside) = full.strip_prefix(&root) else {
         let message = format!("{} does not lie below the root {}", scene.display(), root.display());
@@ -234,6 +228,25 @@ fn unpack(loader: &mut FsLoader, scene: &Path, path: &str) -> Result<Option<Stri
     loader.held.insert(main.clone(), bytes);
     loader.aliases = bundle.dependencies;
     Ok(Some(main))
+}
+
+/// Whether a file is a picture, which may hold a scene.
+pub(super) fn is_picture(path: &Path) -> bool {
+    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+    extension == "svg" || extension == "png" || extension == "pdf"
+}
+
+/// The scene that the bytes of a picture hold, with this root for what they do not; messages call the picture `name`.
+pub(super) fn picture(bytes: &[u8], root: &Path, name: String) -> Result<Opened, OpenError> {
+    let Some(picture) = metadata::extract(bytes) else { return Err(OpenError::NoScene(name)) };
+    let texts = picture.sources.iter().map(|(path, text)| (path.clone(), Arc::from(text.as_bytes())));
+    let files = picture.files.iter().map(|(path, bytes)| (path.clone(), Arc::from(&bytes[..])));
+    let held = texts.chain(files).collect();
+    let path = picture.scene.clone();
+    // What is wrong with a library that the picture happens to lie in does not matter to what it holds.
+    let packages = Packages::find(root).unwrap_or_else(|_| Packages::alone(root));
+    let loader = FsLoader { root: root.to_owned(), held, packages, aliases: picture.dependencies.clone(), bundle: None };
+    Ok(Opened { loader, path, picture: Some(picture) })
 }
 
 /// A relative path with forward slashes.

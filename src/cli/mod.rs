@@ -9,6 +9,7 @@ mod build;
 mod bundle;
 mod check;
 mod convert;
+mod diff;
 mod experiment;
 mod explain;
 mod files;
@@ -110,6 +111,8 @@ enum Command {
     Gallery(gallery::GalleryArgs),
     /// Lock what a library depends on: writes the hashes of its dependencies into kake.lock
     Lock(lock::LockArgs),
+    /// Say what changed between two scenes or two revisions of one, and picture it; works with git's difftool and as a driver
+    Diff(Box<diff::DiffArgs>),
     /// Explain a diagnostic's code, or list them all
     Explain(explain::ExplainArgs),
     /// Print a completion script for a shell
@@ -154,7 +157,7 @@ impl SceneArgs {
 
 /// Runs the command line and says how it ended.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let cli = match Cli::try_parse_from(arguments) {
+    let cli = match Cli::try_parse_from(diff::guarded(arguments)) {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version are results; whatever else clap says is about the command line.
@@ -177,6 +180,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Bundle(arguments) => bundle::run(&arguments),
         Command::Gallery(arguments) => gallery::run(&arguments),
         Command::Lock(arguments) => lock::run(&arguments),
+        Command::Diff(arguments) => diff::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Completions(arguments) => {
             let mut script = Vec::new();
