@@ -35,6 +35,7 @@ pub mod geom;
 pub mod illustrate;
 pub mod loader;
 pub mod lower;
+pub mod lsp;
 pub mod metrics;
 pub mod overlay;
 pub mod pass;
