@@ -33,6 +33,7 @@ pub mod experiment;
 pub mod field;
 pub mod geom;
 pub mod illustrate;
+pub mod library;
 pub mod loader;
 pub mod lower;
 pub mod lsp;

@@ -12,7 +12,7 @@ use crate::diag::{Code, Diagnostic, did_you_mean};
 use crate::drawing::{Drawing, Page};
 use crate::field::Field;
 use crate::geom::{Point, Rect};
-use crate::loader::{LoadError, Loader};
+use crate::loader::{LoadError, Loader, UnknownDependency};
 use crate::lower::{LowerConfig, Lowered, lower};
 use crate::pass::draw::{Assembly, Setting};
 use crate::pass::{cut, place};
@@ -285,6 +285,14 @@ struct With<'a> {
 impl Loader for With<'_> {
     fn load(&self, path: &str) -> Result<Arc<[u8]>, LoadError> {
         if path == self.path { Ok(Arc::clone(&self.text)) } else { self.loader.load(path) }
+    }
+
+    fn library(&self, name: &str) -> Option<Arc<[u8]>> {
+        self.loader.library(name)
+    }
+
+    fn dependency(&self, of: &str, name: &str) -> Result<String, UnknownDependency> {
+        self.loader.dependency(of, name)
     }
 }
 

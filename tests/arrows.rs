@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::support::here;
 
 /// What each part may know of.
-const ARROWS: [(&str, &[&str]); 23] = [
+const ARROWS: [(&str, &[&str]); 25] = [
     ("span", &[]),
     ("geom", &[]),
     ("random", &[]),
@@ -27,12 +27,14 @@ const ARROWS: [(&str, &[&str]); 23] = [
     ("chart", &["geom"]),
     ("illustrate", &["chart", "metrics"]),
     ("back", &["drawing", "geom", "scene"]),
+    ("library", &["diag", "loader", "span", "syntax"]),
     ("lower", &["syntax", "scene", "region", "field", "loader", "diag", "span", "geom", "random"]),
     (
         "wedge",
         &["back", "diag", "drawing", "field", "geom", "loader", "lower", "pass", "region", "scene", "span", "syntax"],
     ),
     ("experiment", &["back", "chart", "diag", "loader", "lower", "metrics", "scene", "span", "stats"]),
+    ("lsp", &["diag", "loader", "lower", "scene", "span", "stop", "syntax"]),
     (
         "cli",
         &[
@@ -44,6 +46,7 @@ const ARROWS: [(&str, &[&str]); 23] = [
             "field",
             "geom",
             "illustrate",
+            "library",
             "loader",
             "lower",
             "metrics",

@@ -124,6 +124,7 @@ pub(super) fn run(arguments: &BuildArgs) -> Ended {
         Ok(opened) => opened,
         Err(error) => return report::cannot_open(error),
     };
+    report::locks(opened.loader.packages());
     let seeds: Vec<Option<u64>> = match arguments.seeds {
         Some(Seeds(from, to)) => (from..=to).map(Some).collect(),
         None => vec![arguments.seed],

@@ -14,8 +14,11 @@ mod files;
 mod fmt;
 mod ir;
 mod limits;
+mod lock;
+mod lsp;
 mod man;
 mod metrics;
+mod packages;
 mod params;
 mod picture;
 mod progress;
@@ -94,8 +97,12 @@ enum Command {
     Wedge(wedge::WedgeArgs),
     /// Run a scene's experiment: every condition with every seed, measured, analysed and pictured
     Experiment(Box<experiment::ExperimentArgs>),
+    /// Lock what a library depends on: writes the hashes of its dependencies into kake.lock
+    Lock(lock::LockArgs),
     /// Explain a diagnostic's code, or list them all
     Explain(explain::ExplainArgs),
+    /// Serve editors: the Language Server Protocol on standard input and output
+    Lsp(lsp::LspArgs),
     /// Print a completion script for a shell
     Completions(CompletionsArgs),
     /// Print the manual page, or write one for each command
@@ -156,7 +163,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Metrics(arguments) => metrics::run(&arguments),
         Command::Wedge(arguments) => wedge::run(&arguments),
         Command::Experiment(arguments) => experiment::run(&arguments),
+        Command::Lock(arguments) => lock::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Lsp(arguments) => lsp::run(&arguments),
         Command::Completions(arguments) => {
             let mut script = Vec::new();
             clap_complete::generate(arguments.shell, &mut Cli::command(), "kake", &mut script);

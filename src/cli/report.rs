@@ -9,6 +9,7 @@ use crate::span::Sources;
 
 use super::Ended;
 use super::files::OpenError;
+use super::packages::Packages;
 
 /// Columns where standard error is no terminal.
 const WIDTH: usize = 100;
@@ -36,7 +37,14 @@ pub(super) fn cannot_open(error: OpenError) -> Ended {
             let diagnostic = Diagnostic::without_span(Code::Metadata, message).hint(hint);
             diagnostics(&[diagnostic], &Sources::new())
         }
+        OpenError::Manifest(faults) => diagnostics(&faults.diagnostics, &faults.sources),
     }
+}
+
+/// Warns of dependencies that are not what was locked.
+pub(super) fn locks(packages: &Packages) {
+    let (found, sources) = packages.unlocked();
+    diagnostics(&found, &sources);
 }
 
 /// Says how far a pen goes in each layer of a plot and in all of them, and what is not drawn as it looks.

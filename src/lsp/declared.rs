@@ -169,7 +169,7 @@ fn listed(params: &[Parameter]) -> String {
 
 /// A parameter as it is declared.
 #[must_use]
-pub fn parameter(param: &Parameter) -> String {
+pub(super) fn parameter(param: &Parameter) -> String {
     let ty = param.ty.as_ref().map(|ty| format!(": {}", ty.name)).unwrap_or_default();
     let default = param.default.as_ref().map(|default| format!(" = {}", one_line(default))).unwrap_or_default();
     format!("{}{ty}{default}", param.name.name)
@@ -180,7 +180,7 @@ const MOST: usize = 120;
 
 /// An expression on one line, cut where it is long.
 #[must_use]
-pub fn one_line(expr: &Expr) -> String {
+pub(super) fn one_line(expr: &Expr) -> String {
     let text = format::expression(expr).split_whitespace().collect::<Vec<_>>().join(" ");
     match text.char_indices().nth(MOST) {
         Some((cut, _)) => format!("{}…", text.get(..cut).unwrap_or_default()),
@@ -190,7 +190,7 @@ pub fn one_line(expr: &Expr) -> String {
 
 /// The kind of a parameter, as far as its declaration shows it.
 #[must_use]
-pub fn kind_of(param: &Parameter) -> Option<Kind> {
+pub(super) fn kind_of(param: &Parameter) -> Option<Kind> {
     if let Some(ty) = &param.ty {
         return Kind::from_name(&ty.name);
     }

@@ -33,7 +33,7 @@ pub use fix::{Fix, fixes};
 pub use frame::{Argument, Called};
 pub use hover::hover;
 pub use outline::{foldings, symbols};
-pub use problem::{problem, severity};
+pub use problem::{Related, problem, severity};
 pub use rename::{Named, check_name, places, renameable, same_meanings};
 pub use signature::help;
 pub use text::{Encoding, Text};

@@ -14,12 +14,22 @@ pub fn severity(severity: Severity) -> DiagnosticSeverity {
     }
 }
 
+/// How an editor shows what belongs to a diagnostic.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Related {
+    /// Below it, with places of their own.
+    Shown,
+    /// Not at all.
+    Unknown,
+}
+
 /// A diagnostic at `range` of the text at `uri`. The hint and further places become related information; `place` gives
 /// the place of a span, where an editor can open its text.
 #[must_use]
 pub fn problem(
     diagnostic: &Diagnostic,
     (uri, range): (&Uri, Range),
+    related: Related,
     place: &dyn Fn(Span) -> Option<Location>,
 ) -> lsp_types::Diagnostic {
     let hint = diagnostic.hint.as_ref().map(|hint| DiagnosticRelatedInformation {
@@ -29,19 +39,21 @@ pub fn problem(
     let notes = diagnostic.notes.iter().filter_map(|(span, note)| {
         Some(DiagnosticRelatedInformation { location: place(*span)?, message: note.clone() })
     });
-    let related: Vec<_> = hint.into_iter().chain(notes).collect();
-    let mut message = diagnostic.message.clone();
-    // Editors that do not show related information show the hint all the same.
-    if let Some(hint) = &diagnostic.hint {
-        message = format!("{message}\n{hint}");
-    }
+    let further: Vec<_> = match related {
+        Related::Shown => hint.into_iter().chain(notes).collect(),
+        Related::Unknown => Vec::new(),
+    };
+    let message = match (&diagnostic.hint, related) {
+        (Some(hint), Related::Unknown) => format!("{}\n{hint}", diagnostic.message),
+        _ => diagnostic.message.clone(),
+    };
     lsp_types::Diagnostic {
         range,
         severity: Some(severity(diagnostic.severity)),
         code: Some(NumberOrString::String(diagnostic.code.to_string())),
         source: Some("kake".to_owned()),
         message,
-        related_information: (!related.is_empty()).then_some(related),
+        related_information: (!further.is_empty()).then_some(further),
         ..lsp_types::Diagnostic::default()
     }
 }
