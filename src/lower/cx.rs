@@ -119,10 +119,10 @@ impl<'a, 'c> Cx<'a, 'c> {
         }
     }
 
-    /// The diagnostics, the files that were read and what was found out about names.
-    pub(super) fn finish(mut self) -> (Vec<Diagnostic>, BTreeMap<String, Arc<[u8]>>, Option<Box<Survey>>) {
+    /// The diagnostics and the files that were read.
+    pub(super) fn finish(mut self) -> (Vec<Diagnostic>, BTreeMap<String, Arc<[u8]>>) {
         self.diagnostics.append(&mut self.lacking);
-        (self.diagnostics, self.files, self.survey)
+        (self.diagnostics, self.files)
     }
 
     /// Reports a mistake that is one whatever the values are. A second one of the same kind at the same place says

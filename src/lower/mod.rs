@@ -122,7 +122,8 @@ fn lower_here(
             let mut cx = Cx::new(&modules, loader, config, diagnostics);
             cx.survey = surveyed;
             let scene = scene(&mut cx, &sets);
-            let (diagnostics, files, surveyed) = cx.finish();
+            let surveyed = cx.survey.take();
+            let (diagnostics, files) = cx.finish();
             let canvas_span = files_canvas(&modules);
             (Lowered { scene, diagnostics, sources, files, canvas_span }, surveyed)
         }

@@ -100,7 +100,7 @@ impl<'a> Cx<'a, '_> {
             Value::Field(field) => self.described_field(field),
             Value::List(members) if !value.has_at_most(MOST_MEMBERS) => format!("a list of {}", members.len()),
             Value::Tone(tone) => format!("the tone `{}`", tone.name),
-            value => value.text(),
+            value => at_a_glance(value).text(),
         };
         match text.char_indices().nth(MOST_CHARACTERS) {
             Some((cut, _)) => format!("{}…", text.get(..cut).unwrap_or_default()),
@@ -132,6 +132,18 @@ impl<'a> Cx<'a, '_> {
             Some((low, high)) => format!("{noun}, about {low}{unit} to {high}{unit} on the page"),
             None => noun.to_owned(),
         }
+    }
+}
+
+/// A number without digits that nobody reads.
+fn at_a_glance(value: &Value) -> Value {
+    let rounded = |number: f64| (number * 1e6).round() / 1e6 + 0.0;
+    match value {
+        Value::Number(number) => Value::Number(rounded(*number)),
+        Value::Length(mm) => Value::Length(rounded(*mm)),
+        Value::Angle(radians) => Value::Angle(rounded(radians.to_degrees()).to_radians()),
+        Value::Percent(share) => Value::Percent(rounded(*share)),
+        other => other.clone(),
     }
 }
 

@@ -222,7 +222,10 @@ impl<'t> Walk<'t, '_> {
                 frame.pinned = Kind::from_name(word);
                 frame.expects = Expects::AfterName;
             }
-            Expects::Member(module) => self.operand(Some(Called { module: Some(module), name: word })),
+            Expects::Member(module) => {
+                frame.expects = Expects::Operand;
+                self.operand(Some(Called { module: Some(module), name: word }));
+            }
             Expects::Colon => {}
             Expects::Operand | Expects::Label => match word {
                 "not" | "if" => {}

@@ -1,6 +1,7 @@
 //! `kake lsp` as an editor meets it: the real program, over its standard input and output.
 
 mod client;
+mod editors;
 mod names;
 mod session;
 mod writing;

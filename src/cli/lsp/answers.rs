@@ -391,7 +391,7 @@ impl<'a> Asked<'a> {
         let params: RenameParams = self.params()?;
         let (new, position) = (params.new_name, params.text_document_position.position);
         let work = move |asked: &renaming::Asked| match asked.rename(&new) {
-            Ok((files, remark)) => {
+            Ok(renaming::Renamed { files, remark }) => {
                 let changes: serde_json::Map<String, Value> =
                     files.into_iter().map(|(uri, edits)| (uri.as_str().to_owned(), json!(edits))).collect();
                 Outcome::Answer(Ok(json!({ "changes": changes })), remark)

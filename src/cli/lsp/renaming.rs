@@ -30,6 +30,14 @@ pub(super) struct Asked {
     pub(super) stop: Stop,
 }
 
+/// A name that was given.
+pub(super) struct Renamed {
+    /// The edits, file by file.
+    pub(super) files: Vec<(Uri, Vec<TextEdit>)>,
+    /// What the person should know about it.
+    pub(super) remark: Option<String>,
+}
+
 /// The scenes that may name what a name means, the one at hand first.
 struct Group {
     drafts: Drafts,
@@ -55,13 +63,13 @@ impl Asked {
         Ok(places.collect())
     }
 
-    /// The edits that give what is named here another name, file by file, and what the person should know about it.
-    pub(super) fn rename(&self, new: &str) -> Result<(Vec<(Uri, Vec<TextEdit>)>, Option<String>), String> {
+    /// The edits that give what is named here another name.
+    pub(super) fn rename(&self, new: &str) -> Result<Renamed, String> {
         let (group, declared, written) = self.group()?;
         let scenes: Vec<&Analysis> = group.scenes.iter().collect();
         let places = lsp::places(&scenes, &declared);
         if written == new {
-            return Ok((Vec::new(), None));
+            return Ok(Renamed { files: Vec::new(), remark: None });
         }
         let text_of = |file: &str| self.text(&group, file).map(|text| text.as_str().to_owned());
         lsp::check_name(new, &places, &text_of)?;
@@ -93,7 +101,7 @@ impl Asked {
             lsp::same_meanings(before, &after, &places, new.len())
                 .map_err(|why| format!("`{new}` will not do: {why}"))?;
         }
-        Ok((files, remark))
+        Ok(Renamed { files, remark })
     }
 
     /// All scenes that may name what is named here, where that is declared, and its name.

@@ -66,7 +66,16 @@ pub(super) fn read(input: &mut impl BufRead) -> Incoming {
         Ok(read) if read as u64 == length => {}
         _ => return Incoming::End,
     }
-    match serde_json::from_slice(&body) {
+    let value: Value = match serde_json::from_slice(&body) {
+        Ok(value) => value,
+        Err(error) => return Incoming::Nonsense(format!("no message: {error}")),
+    };
+    let has_id = value.get("id").is_some();
+    match serde_json::from_value(value) {
+        // Someone waits for an answer to it, and no answer could name it.
+        Ok(Message::Notification(_)) if has_id => {
+            Incoming::Nonsense("an id is a string or a whole number of 32 bits".to_owned())
+        }
         Ok(message) => Incoming::Message(message),
         Err(error) => Incoming::Nonsense(format!("no message: {error}")),
     }
