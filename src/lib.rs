@@ -39,6 +39,7 @@ pub mod illustrate;
 pub mod library;
 pub mod loader;
 pub mod lower;
+pub mod lsp;
 pub mod metrics;
 pub mod overlay;
 pub mod pass;

@@ -17,6 +17,7 @@ mod gallery;
 mod grain;
 mod ink;
 mod library;
+mod lsp;
 mod metrics;
 mod paper;
 mod repeat;

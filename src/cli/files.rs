@@ -249,6 +249,17 @@ pub(super) fn picture(bytes: &[u8], root: &Path, name: String) -> Result<Opened,
     Ok(Opened { loader, path, picture: Some(picture) })
 }
 
+/// The loader of scenes that lie in a folder, saved or not, and what is wrong with the manifests of their libraries.
+pub(super) fn beside(folder: &Path) -> (FsLoader, Option<Faults>) {
+    let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    let root = folder.ancestors().find(|dir| dir.join(MANIFEST).is_file()).unwrap_or(&folder).to_owned();
+    let (packages, faults) = match Packages::find(&root) {
+        Ok(packages) => (packages, None),
+        Err(faults) => (Packages::alone(&root), Some(faults)),
+    };
+    (FsLoader { root, held: BTreeMap::new(), packages, aliases: BTreeMap::new(), bundle: None }, faults)
+}
+
 /// A relative path with forward slashes.
 pub(super) fn slashed(path: &Path) -> String {
     let parts = path.components().filter_map(|part| match part {

@@ -18,6 +18,7 @@ mod gallery;
 mod ir;
 mod limits;
 mod lock;
+mod lsp;
 mod man;
 mod metrics;
 mod new;
@@ -115,6 +116,8 @@ enum Command {
     Diff(Box<diff::DiffArgs>),
     /// Explain a diagnostic's code, or list them all
     Explain(explain::ExplainArgs),
+    /// Serve editors: the Language Server Protocol on standard input and output
+    Lsp(lsp::LspArgs),
     /// Print a completion script for a shell
     Completions(CompletionsArgs),
     /// Print the manual page, or write one for each command
@@ -182,6 +185,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Lock(arguments) => lock::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Lsp(arguments) => lsp::run(&arguments),
         Command::Completions(arguments) => {
             let mut script = Vec::new();
             clap_complete::generate(arguments.shell, &mut Cli::command(), "kake", &mut script);
