@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::support::here;
 
 /// What each part may know of.
-const ARROWS: [(&str, &[&str]); 23] = [
+const ARROWS: [(&str, &[&str]); 24] = [
     ("span", &[]),
     ("geom", &[]),
     ("random", &[]),
@@ -27,6 +27,7 @@ const ARROWS: [(&str, &[&str]); 23] = [
     ("chart", &["geom"]),
     ("illustrate", &["chart", "metrics"]),
     ("back", &["drawing", "geom", "scene"]),
+    ("compare", &["back", "drawing", "geom", "metrics", "scene", "stage"]),
     ("lower", &["syntax", "scene", "region", "field", "loader", "diag", "span", "geom", "random"]),
     (
         "wedge",
@@ -38,6 +39,7 @@ const ARROWS: [(&str, &[&str]); 23] = [
         &[
             "back",
             "chart",
+            "compare",
             "diag",
             "drawing",
             "experiment",
