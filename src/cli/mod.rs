@@ -12,10 +12,13 @@ mod experiment;
 mod explain;
 mod files;
 mod fmt;
+mod gallery;
 mod ir;
 mod limits;
 mod man;
+mod lock;
 mod metrics;
+mod packages;
 mod params;
 mod picture;
 mod preview;
@@ -98,6 +101,10 @@ enum Command {
     Wedge(wedge::WedgeArgs),
     /// Run a scene's experiment: every condition with every seed, measured, analysed and pictured
     Experiment(Box<experiment::ExperimentArgs>),
+    /// Show tones and scenes on a page and a contact sheet
+    Gallery(gallery::GalleryArgs),
+    /// Lock what a library depends on: writes the hashes of its dependencies into kake.lock
+    Lock(lock::LockArgs),
     /// Explain a diagnostic's code, or list them all
     Explain(explain::ExplainArgs),
     /// Print a completion script for a shell
@@ -161,6 +168,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Metrics(arguments) => metrics::run(&arguments),
         Command::Wedge(arguments) => wedge::run(&arguments),
         Command::Experiment(arguments) => experiment::run(&arguments),
+        Command::Gallery(arguments) => gallery::run(&arguments),
+        Command::Lock(arguments) => lock::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Completions(arguments) => {
             let mut script = Vec::new();
