@@ -20,6 +20,7 @@ mod library;
 mod lsp;
 mod metrics;
 mod paper;
+mod preview_server;
 mod repeat;
 mod statistics;
 mod support;

@@ -4,15 +4,16 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Component, Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::back::metadata::{self, Metadata};
 use crate::bundle;
-use crate::library::MANIFEST;
+use crate::library::{LOCK, MANIFEST};
 use crate::loader::{self, LoadError, Loader, UnknownDependency};
 
 use super::Ended;
 use super::packages::{Faults, Packages, is_foreign};
+use super::watch::{Stamp, Stamps};
 
 /// The largest file that is read.
 pub(super) const LARGEST: u64 = 1 << 30;
@@ -31,9 +32,17 @@ pub(super) struct FsLoader {
     aliases: BTreeMap<String, String>,
     /// The scene of a bundle, with the file that holds both.
     bundle: Option<(String, PathBuf)>,
+    /// The files that were asked for, those that are missing too, as they stood just before.
+    asked: Mutex<Stamps>,
 }
 
 impl FsLoader {
+    /// Reads files below a root, and those of the libraries that it depends on.
+    fn new(root: PathBuf, packages: Packages) -> Self {
+        let (held, aliases) = (BTreeMap::new(), BTreeMap::new());
+        Self { root, held, packages, aliases, bundle: None, asked: Mutex::default() }
+    }
+
     /// Of a root folder, in which files that are held stand in for those on disk.
     pub(super) fn at(root: PathBuf, held: BTreeMap<String, Arc<[u8]>>) -> Result<Self, Faults> {
         let packages = Packages::find(&root)?;
@@ -74,6 +83,20 @@ impl FsLoader {
         aliases
     }
 
+    /// Every file that mattered so far, the libraries' manifests included: when one of them changes, so may the picture.
+    pub(super) fn followed(&self) -> Stamps {
+        let mut stamps = self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let folders = self.packages.dependencies().iter().map(|package| package.folder.as_path());
+        for folder in folders.chain([self.root.as_path()]) {
+            for name in [MANIFEST, LOCK] {
+                let path = folder.join(name);
+                let stamp = Stamp::of(&path);
+                stamps.entry(path).or_insert(stamp);
+            }
+        }
+        stamps
+    }
+
     /// Reads a file below a folder.
     fn read(folder: &Path, path: &str) -> Result<Arc<[u8]>, LoadError> {
         let unreadable = |error: io::Error| match error.kind() {
@@ -100,6 +123,10 @@ impl Loader for FsLoader {
     fn load(&self, path: &str) -> Result<Arc<[u8]>, LoadError> {
         if let Some(bytes) = self.held.get(path) {
             return Ok(Arc::clone(bytes));
+        }
+        if let Some(place) = self.place(path) {
+            let stamp = Stamp::of(&place);
+            self.asked.lock().unwrap_or_else(PoisonError::into_inner).entry(place).or_insert(stamp);
         }
         match loader::split(path) {
             ("", _) => Self::read(&self.root, path),
@@ -160,7 +187,7 @@ pub(super) fn open(scene: &Path, root: Option<&Path>) -> Result<Opened, OpenErro
         let root = root.canonicalize().map_err(|error| failed(root, &error))?;
         let held = BTreeMap::from([(STDIN.to_owned(), Arc::from(text))]);
         let packages = Packages::find(&root).map_err(OpenError::Manifest)?;
-        let mut loader = FsLoader { root, held, packages, aliases: BTreeMap::new(), bundle: None };
+        let mut loader = FsLoader { held, ..FsLoader::new(root, packages) };
         let path = match unpack(&mut loader, scene, STDIN)? {
             Some(path) => path,
             None => STDIN.to_owned(),
@@ -189,7 +216,7 @@ pub(super) fn open(scene: &Path, root: Option<&Path>) -> Result<Opened, OpenErro
         (Some(_), Err(_)) => Packages::alone(&root),
         (None, Err(faults)) => return Err(OpenError::Manifest(faults)),
     };
-    let mut loader = FsLoader { root, held: BTreeMap::new(), packages, aliases: BTreeMap::new(), bundle: None };
+    let mut loader = FsLoader::new(root, packages);
     if let Some(bytes) = bytes {
         loader.held.insert(path.clone(), bytes);
         if let Some(held) = unpack(&mut loader, scene, &path)? {
@@ -245,7 +272,11 @@ pub(super) fn picture(bytes: &[u8], root: &Path, name: String) -> Result<Opened,
     let path = picture.scene.clone();
     // What is wrong with a library that the picture happens to lie in does not matter to what it holds.
     let packages = Packages::find(root).unwrap_or_else(|_| Packages::alone(root));
-    let loader = FsLoader { root: root.to_owned(), held, packages, aliases: picture.dependencies.clone(), bundle: None };
+    let loader = FsLoader {
+        held,
+        aliases: picture.dependencies.clone(),
+        ..FsLoader::new(root.to_owned(), packages)
+    };
     Ok(Opened { loader, path, picture: Some(picture) })
 }
 
@@ -257,7 +288,7 @@ pub(super) fn beside(folder: &Path) -> (FsLoader, Option<Faults>) {
         Ok(packages) => (packages, None),
         Err(faults) => (Packages::alone(&root), Some(faults)),
     };
-    (FsLoader { root, held: BTreeMap::new(), packages, aliases: BTreeMap::new(), bundle: None }, faults)
+    (FsLoader::new(root, packages), faults)
 }
 
 /// A relative path with forward slashes.
@@ -355,6 +386,14 @@ pub(super) fn replace(target: &Path, text: &str) -> Ended {
 }
 
 impl Pending {
+    /// Moves the file to its place, if no other has come there meanwhile.
+    pub(super) fn keep_new(self) -> io::Result<()> {
+        match self.file {
+            Written::Beside(file) => file.persist_noclobber(&self.target).map_err(|error| error.error),
+            Written::Straight => Ok(()),
+        }
+    }
+
     /// Moves the file to its place.
     pub(super) fn keep(self) -> io::Result<()> {
         match self.file {
