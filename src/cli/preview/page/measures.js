@@ -10,7 +10,7 @@ const REST = 120;
 /** The measures in the order of the table: key, words, what they say; the first are always shown. */
 const CHIEF = [
   ["e_contrast", "Contrast", "How far neighbours are turned apart, 0 to 1"],
-  ["e_share", "of the best", "The share of what these links allow"],
+  ["e_share", "Share of the best", "The share of what these links allow"],
   ["h_angle", "Directions", "How evenly directions are used, 0 to 1"],
   ["xi", "Reach", "Correlation length, in links"],
   ["c_cov", "Covered", "The share of the region that tiles cover"],

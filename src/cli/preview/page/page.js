@@ -65,6 +65,9 @@ function idle() {
   if (picture.shown && last?.ok) reshow();
 }
 
+/** What the file of a value is called that no file holds. */
+const VALUE = "--set ";
+
 function answer(said, asked) {
   const wasGood = last?.ok ?? true;
   last = said;
@@ -87,9 +90,9 @@ function answer(said, asked) {
   } else {
     state("faulty", errors.length === 1 ? "1 mistake" : plural(errors.length, "mistake"));
     const first = errors[0] ?? said.diagnostics[0];
-    const place = first?.file && first.line ? ` (${first.file}, line ${first.line})` : "";
-    const old = picture.shown ? "This is the last good picture. " : "";
-    banner(`${old}${first?.message ?? "The scene cannot be drawn"}${place}`);
+    const place = own.includes(first?.file) ? `${first.file}, line ${first.line}: ` : "";
+    const value = first?.file?.startsWith(VALUE) ? `${first.file.slice(VALUE.length)}: ` : "";
+    banner(`${place}${value}${first?.message ?? "the scene cannot be drawn"}`, picture.shown ? "Last good picture." : "");
     $("empty").textContent = "There is no picture yet: the scene has a mistake.";
     if (wasGood && errors.some(({ file }) => own.includes(file)) && $("drawer").hidden) showSource(true, true);
     if (!$("drawer").hidden) source.next();

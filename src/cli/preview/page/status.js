@@ -15,10 +15,10 @@ export function state(kind, words, title = "") {
 }
 
 /** Says over the picture why it is old, or nothing. */
-export function banner(words) {
+export function banner(words, lead = "") {
   const element = $("banner");
   const isShown = words !== null;
-  if (isShown && element.textContent !== words) element.textContent = words;
+  if (isShown && element.textContent !== lead + words) element.replaceChildren(make("strong", {}, lead), words);
   element.hidden = !isShown;
   $("viewport").toggleAttribute("data-old", isShown);
 }

@@ -50,7 +50,8 @@ export function toStep(value, step) {
 
 /** `count` values evenly from one end to the other. */
 export function between(from, to, count) {
-  const step = niceStep(from, to);
+  // A few digits are enough to tell them apart.
+  const step = niceStep(from, from + (to - from) * 8);
   return Array.from({ length: count }, (_, i) => toStep(from + ((to - from) * i) / (count - 1), step));
 }
 

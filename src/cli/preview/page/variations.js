@@ -3,7 +3,7 @@
 import { draw, thumbAddress } from "./api.js";
 import { icon, make } from "./dom.js";
 import { loadImage } from "./image.js";
-import { seedAfter } from "./link.js";
+import { seedAfter, toFragment } from "./link.js";
 import { between } from "./values.js";
 
 /** Pictures on a side. */
@@ -129,6 +129,7 @@ export class Variations {
     const across = this.#across === SEEDS ? null : find(this.#across);
     const down = this.#down === SEEDS || !across ? null : find(this.#down);
     const cells = [];
+    this.#element.style.setProperty("--columns", across ? valuesOf(across).length : SIDE);
     if (!across) {
       for (let i = 0; i < SIDE * SIDE; i += 1) {
         cells.push({ part: { seed: seed(i) }, words: `seed ${seed(i)}` });
@@ -148,8 +149,6 @@ export class Variations {
         cells.push({ part: { sets }, words: `${across.name} ${value} · ${down.name} ${other}` });
       }
     }
-    const columns = valuesOf(across).length;
-    this.#element.style.setProperty("--columns", columns);
     return cells;
   }
 
@@ -159,9 +158,10 @@ export class Variations {
       this.close();
       this.#wish.change(part);
     };
+    const isNow = toFragment({ ...wish, seed: wish.seed ?? this.#seed }) === toFragment({ ...this.#wish.now, seed: this.#seed });
     const button = make(
       "button",
-      { className: "cell", tabIndex: i === 0 ? 0 : -1, "data-state": "waiting", "aria-label": words, onclick: choose },
+      { className: "cell", tabIndex: i === 0 ? 0 : -1, "data-state": "waiting", "aria-current": isNow ? "true" : null, "aria-label": words, onclick: choose },
       make("span", { className: "thumb" }),
       make("span", { className: "caption" }, words),
     );
@@ -201,7 +201,7 @@ export class Variations {
       return;
     }
     const at = this.#cells.findIndex(({ button }) => button === document.activeElement);
-    const columns = this.#across === SEEDS ? SIDE : Number(this.#element.style.getPropertyValue("--columns")) || SIDE;
+    const columns = Number(this.#element.style.getPropertyValue("--columns"));
     const ways = { ArrowLeft: -1, ArrowRight: 1, ArrowUp: -columns, ArrowDown: columns, Home: -at, End: this.#cells.length - 1 - at };
     const way = ways[event.key];
     if (at < 0 || way === undefined) return;
