@@ -122,6 +122,8 @@ impl Observer for () {
 pub struct Compiled {
     /// The picture, unless there are errors.
     pub drawing: Option<Drawing>,
+    /// How many tiles its paints have, those that are not drawn included.
+    pub tiles: u64,
     /// The scene with every diagnostic, the passes' included, every text and every file that was read.
     pub lowered: Lowered,
 }
@@ -134,23 +136,25 @@ pub struct Compiled {
 pub fn compile(path: &str, loader: &dyn Loader, config: &Config, observer: &mut dyn Observer) -> Compiled {
     observer.begin(Step::Lower, "");
     let mut lowered = lower::lower(path, loader, &config.lower);
-    let Some(scene) = &lowered.scene else { return Compiled { drawing: None, lowered } };
+    let Some(scene) = &lowered.scene else { return Compiled { drawing: None, tiles: 0, lowered } };
     let mut diagnostics = Vec::new();
     // What concerns the whole scene is said at its first character.
     let start = lowered.sources.iter().next().map(|(source, _)| Span::new(source, 0, 0));
-    let drawing = draw(scene, start, config, observer, &mut diagnostics);
+    let mut tiles = 0;
+    let drawing = draw(scene, start, config, observer, &mut diagnostics, &mut tiles);
     lowered.diagnostics.extend(diagnostics);
     diag::sort(&mut lowered.diagnostics);
-    Compiled { drawing, lowered }
+    Compiled { drawing, tiles, lowered }
 }
 
-/// Draws a scene. Limits that are met and warnings go to `diagnostics`.
+/// Draws a scene. Limits that are met and warnings go to `diagnostics`; what tiles there are is added to `tiles`.
 fn draw(
     scene: &Scene,
     start: Option<Span>,
     config: &Config,
     observer: &mut dyn Observer,
     diagnostics: &mut Vec<Diagnostic>,
+    tiles: &mut u64,
 ) -> Option<Drawing> {
     let (canvas, limits) = (&scene.canvas, &config.lower.limits);
     let mut items = items(scene);
@@ -182,6 +186,7 @@ fn draw(
             Item::Ink(ink) => assembly.ink(ink, setting).map(|()| None),
             Item::Paint(paint) => PaintStages::new(paint, canvas, limits, observer, diagnostics).and_then(|stages| {
                 observer.begin(Step::Draw, &paint.name);
+                *tiles += stages.tiles.len() as u64;
                 if !config.overlays.is_empty() {
                     patterns.push(Pattern::new(paint, canvas, &stages.borrow()));
                     last = Some(paint.span);

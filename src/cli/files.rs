@@ -25,6 +25,13 @@ pub(super) struct FsLoader {
     held: BTreeMap<String, Arc<[u8]>>,
 }
 
+impl FsLoader {
+    /// Where a file lies on disk, if it is one: whether it is there or not.
+    pub(super) fn place(&self, path: &str) -> Option<PathBuf> {
+        (!self.held.contains_key(path)).then(|| self.root.join(path))
+    }
+}
+
 impl Loader for FsLoader {
     fn load(&self, path: &str) -> Result<Arc<[u8]>, LoadError> {
         if let Some(bytes) = self.held.get(path) {

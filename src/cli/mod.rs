@@ -17,8 +17,10 @@ mod limits;
 mod metrics;
 mod params;
 mod picture;
+mod preview;
 mod progress;
 mod report;
+mod watch;
 mod wedge;
 
 use std::ffi::OsString;
@@ -67,6 +69,8 @@ struct Cli {
 enum Command {
     /// Compile a scene to a picture
     Build(build::BuildArgs),
+    /// Show a scene in a browser, drawn again whenever it is saved
+    Preview(preview::PreviewArgs),
     /// Say what is wrong with scenes, without drawing them
     Check(check::CheckArgs),
     /// Bring scenes into their canonical form
@@ -135,6 +139,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     let ended = match cli.command {
         Command::Build(arguments) => build::run(&arguments),
+        Command::Preview(arguments) => preview::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Fmt(arguments) => fmt::run(&arguments),
         Command::Convert(arguments) => convert::run(&arguments),
