@@ -36,8 +36,8 @@ async function post(path, body, signal) {
 /** What of a wish the server has to know. */
 const request = ({ sets, seed, overlays, only }) => ({ sets, seed, overlays, only });
 
-/** Draws; the answer holds the drawing's id or what is wrong with the scene. */
-export const draw = (wish, signal) => post("/api/draw", request(wish), signal);
+/** Draws; the answer holds the drawing's id or what is wrong with the scene. What is told meanwhile names the job. */
+export const draw = (wish, signal, job = null) => post("/api/draw", { ...request(wish), job }, signal);
 
 /** Saves the picture as a file and says where. */
 export const save = (wish, kind) => post("/api/save", { ...request(wish), kind });
@@ -63,13 +63,14 @@ export const thumbAddress = (id, size) => `/api/picture/${id}/thumb.png?size=${s
 const AGAIN = 1500;
 
 /**
- * Listens to the server for as long as the page is open. `on.changed` is told of changes on disk, `on.there` each time the
- * server answers, `on.gone` when it does not.
+ * Listens to the server for as long as the page is open. `on.changed` is told of changes on disk, `on.step` where a
+ * drawing is that takes long, `on.there` each time the server answers, `on.gone` when it does not.
  */
 export function listen(on) {
   const events = new EventSource("/api/events");
   events.addEventListener("open", () => on.there());
   events.addEventListener("changed", (event) => on.changed(JSON.parse(event.data)));
+  events.addEventListener("step", (event) => on.step(JSON.parse(event.data)));
   events.addEventListener("error", () => {
     on.gone();
     // A browser that has given up is asked to try again.

@@ -17,6 +17,7 @@ export class Drawer {
   #on;
   #waiting = null;
   #running = null;
+  #job = 0;
 
   /**
    * `show(answer, hidden, signal)` brings a picture to the screen. `on` is told: `busy` while it takes long, `answer` of each
@@ -25,6 +26,11 @@ export class Drawer {
   constructor(show, on) {
     this.#show = show;
     this.#on = on;
+  }
+
+  /** The number of the job that is under way. */
+  get job() {
+    return this.#job;
   }
 
   get isIdle() {
@@ -54,10 +60,11 @@ export class Drawer {
     const { wish, since } = this.#waiting;
     this.#waiting = null;
     const abort = new AbortController();
+    this.#job += 1;
     this.#running = { start: performance.now(), abort, timer: 0 };
     const soon = setTimeout(() => this.#on.busy(), SOON);
     try {
-      const answer = await draw(wish, abort.signal);
+      const answer = await draw(wish, abort.signal, this.#job);
       if (answer.ok) {
         await this.#show(answer, wish.hidden, abort.signal);
         // Figures for whoever measures how long it takes from a wish to its picture.

@@ -79,7 +79,7 @@ function answer(said, asked) {
   problems(said.diagnostics);
   source.put(said);
   seedBox();
-  $("command-text").textContent = said.command;
+  if (said.command !== null) $("command-text").textContent = said.command;
   variations.from(said.seed);
   if (said.ok) {
     state("ready", "Ready", said.steps.map(([name, ms]) => `${name} ${ms} ms`).join("\n"));
@@ -196,6 +196,11 @@ api.listen({
     drawer.ask(wish.now);
     variations.refresh();
   },
+  step: ({ job, step, paint, ms }) => {
+    if (job !== drawer.job || drawer.isIdle) return;
+    const what = step === "" ? "Waiting" : `Drawing: ${step}${paint ? ` of ${paint}` : ""}`;
+    state("busy", `${what}, ${(ms / 1000).toFixed(1)} s`);
+  },
   there: () => {
     if (!isGone) return;
     isGone = false;
@@ -257,7 +262,7 @@ function buttons() {
   $("undo").disabled = !wish.canUndo;
   $("redo").disabled = !wish.canRedo;
   $("reset-all").disabled = Object.keys(wish.now.sets).length === 0;
-  $("write").disabled = !wish.isChanged || !last?.ok;
+  $("write").disabled = !wish.isChanged || !last?.ok || !last.writable;
 }
 
 // ----------------------------------------------------------------------------------------------------------- actions

@@ -143,7 +143,7 @@ function spans(pieces, marks, line) {
 /** What is wrong, in words. */
 function card(fault, pane) {
   const notes = (fault.notes ?? []).map(({ file, line, message }) => {
-    const go = make("button", { className: "quiet", onclick: () => pane.go(file, line) }, `${file}:${line}`);
+    const go = file ? make("button", { className: "quiet", onclick: () => pane.go(file, line) }, `${file}:${line}`) : null;
     return make("p", { className: "note" }, go, ` ${message}`);
   });
   return make(
