@@ -17,6 +17,7 @@ mod grain;
 mod ink;
 mod metrics;
 mod paper;
+mod preview;
 mod repeat;
 mod statistics;
 mod support;
