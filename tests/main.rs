@@ -4,6 +4,7 @@
 mod angles;
 mod arrows;
 mod bad_input;
+mod browser;
 mod cases;
 mod cli;
 mod codes;

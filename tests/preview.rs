@@ -1,24 +1,18 @@
-//! The page of `kake preview` in a real browser: the program serves a scene, headless Chromium shows it, and the tests do
-//! what an artist does.
+//! The page of `kake preview` in a real browser: the tests do what an artist does.
 //!
-//! The browser is what `KAKE_CHROMIUM` names, otherwise Chromium or Chrome on the path. Without one the tests say so and pass;
-//! with `KAKE_BROWSER=required` they fail. Nothing here measures time: what is waited for has a deadline that only a
-//! fault reaches.
+//! Without a browser they say so and pass; with `KAKE_BROWSER=required` they fail. Nothing here measures time: what is waited
+//! for has a deadline that only a fault reaches.
 
 use std::env;
 use std::fs;
-use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
-use std::sync::{Arc, Mutex};
+use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use headless_chrome::browser::tab::ModifierKey;
-use headless_chrome::protocol::cdp::types::Event;
-use headless_chrome::protocol::cdp::{Log, Network};
-use headless_chrome::{Browser, LaunchOptions, Tab};
-use tempfile::TempDir;
+
+use crate::browser::{DEADLINE, Page, Server};
 
 const SCENE: &str = r#"edition 1
 
@@ -42,47 +36,18 @@ paint sheet with plain as "sheet"
 outline sheet pen 0.4mm
 "#;
 
-/// How long anything is waited for. Machines under test are slow at times; what is right comes long before.
-const DEADLINE: Duration = Duration::from_secs(90);
-
-/// Where the browser is, if there is one.
-fn browser_path() -> Option<PathBuf> {
-    if let Some(path) = env::var_os("KAKE_CHROMIUM") {
-        return Some(path.into());
+/// Opens the page; nothing where there is no browser and none is required.
+fn open(server: &Server) -> Option<Page> {
+    let page = Page::open(&server.address, server.path("profile"));
+    let is_required = env::var("KAKE_BROWSER").is_ok_and(|value| value == "required");
+    assert!(page.is_some() || !is_required, "no browser: `KAKE_CHROMIUM` names none, and the path has none");
+    if page.is_none() {
+        eprintln!("no Chromium is here: the page is not tried");
     }
-    let folders: Vec<PathBuf> = env::split_paths(&env::var_os("PATH")?).collect();
-    let names = ["chromium", "chromium-browser", "google-chrome"];
-    names.iter().flat_map(|name| folders.iter().map(move |folder| folder.join(name))).find(|path| path.is_file())
-}
-
-/// The program, serving a scene in a folder of its own until it is dropped.
-struct Server {
-    child: Child,
-    folder: TempDir,
-    address: String,
+    page
 }
 
 impl Server {
-    fn start(scene: &str) -> Self {
-        let folder = tempfile::tempdir().expect("there is room for a folder");
-        fs::write(folder.path().join("scene.kake"), scene).expect("the folder can be written");
-        let mut child = Command::new(env!("CARGO_BIN_EXE_kake"))
-            .args(["preview", "scene.kake"])
-            .current_dir(folder.path())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("the program starts");
-        let mut address = String::new();
-        let out = child.stdout.take().expect("the output is a pipe");
-        BufReader::new(out).read_line(&mut address).expect("the program says where the page is");
-        Self { child, folder, address: address.trim().to_owned() }
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
     fn scene(&self) -> String {
         fs::read_to_string(self.path("scene.kake")).expect("the scene can be read")
     }
@@ -92,91 +57,7 @@ impl Server {
     }
 }
 
-impl Drop for Server {
-    fn drop(&mut self) {
-        // Whether it ended by itself makes no difference now.
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
-/// The page in the browser, and what the browser says of it.
-struct Page {
-    tab: Arc<Tab>,
-    /// Errors on the console, and exceptions.
-    errors: Arc<Mutex<Vec<String>>>,
-    /// The addresses of all requests.
-    requests: Arc<Mutex<Vec<String>>>,
-    _browser: Browser,
-}
-
 impl Page {
-    /// Opens an address; nothing where there is no browser and none is required.
-    fn open(address: &str) -> Option<Self> {
-        let Some(path) = browser_path() else {
-            let is_required = env::var("KAKE_BROWSER").is_ok_and(|value| value == "required");
-            assert!(!is_required, "no browser: `KAKE_CHROMIUM` names none, and the path has no chromium or google-chrome");
-            eprintln!("no Chromium is here: the page is not tried");
-            return None;
-        };
-        let options = LaunchOptions::default_builder()
-            .path(Some(path))
-            .sandbox(false)
-            .window_size(Some((1280, 800)))
-            .idle_browser_timeout(2 * DEADLINE)
-            .build()
-            .expect("the options are complete");
-        let browser = Browser::new(options).expect("the browser starts");
-        let tab = browser.new_tab().expect("the browser has a window");
-        tab.set_default_timeout(DEADLINE);
-        let (errors, requests) = (Arc::new(Mutex::new(Vec::new())), Arc::new(Mutex::new(Vec::new())));
-        let (wrong, asked) = (Arc::clone(&errors), Arc::clone(&requests));
-        let listener = move |event: &Event| match event {
-            Event::NetworkRequestWillBeSent(sent) => asked.lock().unwrap().push(sent.params.request.url.clone()),
-            Event::LogEntryAdded(added) if added.params.entry.level == Log::LogEntryLevel::Error => {
-                wrong.lock().unwrap().push(format!("{:?} {:?}", added.params.entry.text, added.params.entry.url));
-            }
-            Event::RuntimeExceptionThrown(thrown) => {
-                wrong.lock().unwrap().push(format!("{:?}", thrown.params.exception_details));
-            }
-            _ => {}
-        };
-        tab.add_event_listener(Arc::new(listener)).expect("the window can be listened to");
-        tab.enable_log().and_then(|tab| tab.enable_runtime()).expect("the window says what is wrong");
-        let network = Network::Enable {
-            max_total_buffer_size: None,
-            max_resource_buffer_size: None,
-            max_post_data_size: None,
-            report_direct_socket_traffic: None,
-            enable_durable_messages: None,
-        };
-        tab.call_method(network).expect("the window says what is asked for");
-        tab.navigate_to(address).expect("the page can be opened");
-        let page = Self { tab, errors, requests, _browser: browser };
-        page.until("the picture is there", "document.querySelector('#viewport')?.dataset.state === 'drawn'");
-        Some(page)
-    }
-
-    /// What an expression of the page gives, as text.
-    fn ask(&self, expression: &str) -> String {
-        let text = format!("(async () => String({expression}))()");
-        let object = self.tab.evaluate(&text, true).expect("the page answers");
-        let value = object.value.as_ref().and_then(|value| value.as_str().map(str::to_owned));
-        value.unwrap_or_else(|| panic!("`{expression}` gives {object:?}"))
-    }
-
-    /// Waits until an expression of the page holds.
-    fn until(&self, what: &str, expression: &str) {
-        let begun = Instant::now();
-        while self.ask(expression) != "true" {
-            if begun.elapsed() > DEADLINE {
-                let shown = self.ask("document.body.innerText");
-                panic!("never: {what}\nerrors: {:?}\nthe page says:\n{shown}", self.errors.lock().unwrap());
-            }
-            sleep(Duration::from_millis(20));
-        }
-    }
-
     /// Clicks on an element, as the mouse does.
     fn click(&self, selector: &str) {
         self.ask(&format!("document.querySelector({selector:?}).scrollIntoView({{ block: 'nearest' }})"));
@@ -224,7 +105,11 @@ impl Page {
             if picture != old {
                 return picture;
             }
-            assert!(begun.elapsed() < DEADLINE, "the picture never changes: {what}\n{}", self.ask("document.body.innerText"));
+            assert!(
+                begun.elapsed() < DEADLINE,
+                "the picture never changes: {what}\n{}",
+                self.ask("document.body.innerText")
+            );
             sleep(Duration::from_millis(20));
         }
     }
@@ -248,7 +133,9 @@ impl Page {
 
     /// Waits for a message that begins with this, and gives what follows in it.
     fn message(&self, begin: &str) -> String {
-        let find = format!("[...document.querySelectorAll('.toast span')].findLast((e) => e.textContent.startsWith({begin:?}))");
+        let find = format!(
+            "[...document.querySelectorAll('.toast span')].findLast((e) => e.textContent.startsWith({begin:?}))"
+        );
         self.until(&format!("a message says `{begin}`"), &format!("{find} !== undefined"));
         self.ask(&format!("{find}.textContent")).trim_start_matches(begin).to_owned()
     }
@@ -282,7 +169,7 @@ fn built(folder: &Path, command: &str) -> Vec<u8> {
 #[test]
 fn a_scene_is_edited_turned_broken_mended_and_saved() {
     let server = Server::start(SCENE);
-    let Some(page) = Page::open(&server.address) else { return };
+    let Some(page) = open(&server) else { return };
     let ink = page.ink();
     assert!((0.05..0.6).contains(&ink), "the picture has strokes, not {ink} of ink");
     let first = page.picture();
@@ -349,7 +236,7 @@ fn a_scene_is_edited_turned_broken_mended_and_saved() {
 #[test]
 fn one_of_sixteen_is_chosen_and_written_into_the_scene() {
     let server = Server::start(SCENE);
-    let Some(page) = Page::open(&server.address) else { return };
+    let Some(page) = open(&server) else { return };
     let first = page.picture();
     page.click("#vary");
     page.until("sixteen pictures", "document.querySelectorAll('.cell[data-state=there] img').length === 16");
@@ -390,7 +277,10 @@ fn one_of_sixteen_is_chosen_and_written_into_the_scene() {
     page.message("Written into scene.kake");
     let scene = server.scene();
     assert!(scene.contains("param tile: length = 6mm in 2mm .. 8mm") && scene.contains("seed 10"), "{scene}");
-    page.until("nothing is set", "document.querySelector('#command-text').textContent === 'kake build scene.kake -o scene.svg'");
+    page.until(
+        "nothing is set",
+        "document.querySelector('#command-text').textContent === 'kake build scene.kake -o scene.svg'",
+    );
     assert_eq!(page.picture(), wide);
     page.is_clean(&server.address);
 }
@@ -398,7 +288,7 @@ fn one_of_sixteen_is_chosen_and_written_into_the_scene() {
 #[test]
 fn the_keyboard_is_enough() {
     let server = Server::start(SCENE);
-    let Some(page) = Page::open(&server.address) else { return };
+    let Some(page) = open(&server) else { return };
     page.key("?");
     page.until("the keys are listed", "document.querySelector('#help').open");
     page.key("Escape");
@@ -453,7 +343,7 @@ fn tiles_show_a_large_drawing() {
     let scene = SCENE.replace("(40mm, 30mm)", "(400mm, 300mm)").replace("(32mm, 22mm)", "(392mm, 292mm)");
     let scene = scene.replace("= 4mm in", "= 2.5mm in").replace("pitch: 0.8mm", "pitch: 0.4mm");
     let server = Server::start(&scene);
-    let Some(page) = Page::open(&server.address) else { return };
+    let Some(page) = open(&server) else { return };
     let tiles = "document.querySelectorAll('#sheet .tiles img')";
     assert_ne!(page.ask(&format!("{tiles}.length")), "0", "tiles are shown");
     page.until("the tiles are there", &format!("[...{tiles}].every((tile) => tile.naturalWidth > 0)"));
@@ -471,7 +361,7 @@ fn tiles_show_a_large_drawing() {
 #[test]
 fn the_page_waits_for_its_server() {
     let mut server = Server::start(SCENE);
-    let Some(page) = Page::open(&server.address) else { return };
+    let Some(page) = open(&server) else { return };
     let picture = page.picture();
     server.child.kill().and_then(|()| server.child.wait()).expect("the program can be ended");
     page.until("the page says so", "document.querySelector('#state').dataset.kind === 'gone'");

@@ -4,7 +4,7 @@ import { make } from "./dom.js";
 
 /** An image of this address, once it can be painted. */
 export async function loadImage(address, signal) {
-  const image = make("img", { alt: "", draggable: false, decoding: "async" });
+  const image = make("img", { alt: "", draggable: false, decoding: "async", elementtiming: "picture" });
   const forget = () => image.removeAttribute("src");
   signal?.addEventListener("abort", forget, { once: true });
   image.src = address;

@@ -151,12 +151,14 @@ export class Tiles {
   }
 }
 
-/** Tiles end on whole pixels, so that no gap shows between them. */
+/** Tiles end on whole pixels, so that no gap shows between them. Those at the page's edge may be smaller. */
 function place({ z, x, y, image }, scale) {
-  const side = (SIDE / 2 ** z) * scale;
-  const [left, top] = [Math.round(x * side), Math.round(y * side)];
+  const pixel = scale / 2 ** z;
+  const edges = (at, size) => [at * SIDE, at * SIDE + size].map((edge) => Math.round(edge * pixel));
+  const [left, right] = edges(x, image.naturalWidth);
+  const [top, bottom] = edges(y, image.naturalHeight);
   image.style.left = `${left}px`;
   image.style.top = `${top}px`;
-  image.style.width = `${Math.round((x + 1) * side) - left}px`;
-  image.style.height = `${Math.round((y + 1) * side) - top}px`;
+  image.style.width = `${right - left}px`;
+  image.style.height = `${bottom - top}px`;
 }
