@@ -27,12 +27,15 @@ pub mod back;
 pub mod chart;
 #[doc(hidden)]
 pub mod cli;
+pub mod compare;
 pub mod diag;
 pub mod drawing;
 pub mod experiment;
 pub mod field;
+pub mod gallery;
 pub mod geom;
 pub mod illustrate;
+pub mod library;
 pub mod loader;
 pub mod lower;
 pub mod metrics;
@@ -41,10 +44,12 @@ pub mod pass;
 pub mod random;
 pub mod region;
 pub mod scene;
+pub mod sheet;
 pub mod span;
 pub mod stage;
 pub mod stats;
 pub mod stop;
+pub mod swatch;
 pub mod syntax;
 pub mod wedge;
 

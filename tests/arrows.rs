@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::support::here;
 
 /// What each part may know of.
-const ARROWS: [(&str, &[&str]); 23] = [
+const ARROWS: [(&str, &[&str]); 28] = [
     ("span", &[]),
     ("geom", &[]),
     ("random", &[]),
@@ -26,24 +26,35 @@ const ARROWS: [(&str, &[&str]); 23] = [
     ("stats", &[]),
     ("chart", &["geom"]),
     ("illustrate", &["chart", "metrics"]),
-    ("back", &["drawing", "geom", "scene"]),
+    ("sheet", &["drawing", "geom", "scene"]),
+    ("back", &["drawing", "geom", "scene", "sheet"]),
+    ("compare", &["back", "drawing", "geom", "metrics", "scene", "stage"]),
+    ("library", &["diag", "loader", "span", "syntax"]),
     ("lower", &["syntax", "scene", "region", "field", "loader", "diag", "span", "geom", "random"]),
+    ("swatch", &["diag", "geom", "loader", "lower", "pass", "scene", "span", "syntax"]),
     (
         "wedge",
-        &["back", "diag", "drawing", "field", "geom", "loader", "lower", "pass", "region", "scene", "span", "syntax"],
+        &[
+            "back", "diag", "drawing", "field", "geom", "loader", "lower", "pass", "region", "scene", "span", "swatch",
+            "syntax",
+        ],
     ),
+    ("gallery", &["diag", "drawing", "geom", "loader", "lower", "scene", "sheet", "span", "swatch", "syntax"]),
     ("experiment", &["back", "chart", "diag", "loader", "lower", "metrics", "scene", "span", "stats"]),
     (
         "cli",
         &[
             "back",
             "chart",
+            "compare",
             "diag",
             "drawing",
             "experiment",
             "field",
+            "gallery",
             "geom",
             "illustrate",
+            "library",
             "loader",
             "lower",
             "metrics",
@@ -52,6 +63,7 @@ const ARROWS: [(&str, &[&str]); 23] = [
             "random",
             "region",
             "scene",
+            "sheet",
             "span",
             "stage",
             "stats",
@@ -142,13 +154,13 @@ fn every_part_knows_only_what_it_may() {
         for path in files.iter().filter(|path| !is_test(path)) {
             for name in named(&code(path)) {
                 let is_part = name.chars().next().is_some_and(char::is_lowercase);
-                // What stands in lib.rs itself is the pipeline, which only the command line and wedges drive.
+                // What stands in lib.rs itself is the pipeline, which only the command line, wedges and swatches drive.
                 let fits = if is_part {
                     name == **part || allowed.contains(&name.as_str())
                 } else {
-                    matches!(*part, "cli" | "experiment" | "wedge")
+                    matches!(*part, "cli" | "experiment" | "gallery" | "swatch" | "wedge")
                 };
-                let pipeline = matches!(*part, "cli" | "experiment" | "wedge")
+                let pipeline = matches!(*part, "cli" | "experiment" | "gallery" | "swatch" | "wedge")
                     && matches!(name.as_str(), "compile" | "paints" | "no_such_paint");
                 if !fits && !pipeline {
                     wrong.push(format!("{} names crate::{name}", path.display()));

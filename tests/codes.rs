@@ -7,7 +7,7 @@ use kakeami::diag::Code;
 use crate::support::{compile_case, scenes};
 
 /// Codes that only the command line shows; its tests do.
-const BY_THE_COMMAND_LINE: [Code; 1] = [Code::Metadata];
+const BY_THE_COMMAND_LINE: [Code; 4] = [Code::Lock, Code::Manifest, Code::Metadata, Code::Pin];
 
 #[test]
 fn every_code_is_shown() {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use kakeami::diag::{Diagnostic, RenderConfig, render};
 use kakeami::drawing::Drawing;
-use kakeami::loader::{LoadError, Loader, MemoryLoader};
+use kakeami::loader::{LoadError, Loader, MemoryLoader, UnknownDependency};
 use kakeami::span::Sources;
 use kakeami::syntax::kake;
 use kakeami::{Compiled, Config, compile};
@@ -30,6 +30,10 @@ impl Loader for Folder {
             io::ErrorKind::NotFound => LoadError::Missing,
             _ => LoadError::Unreadable(error.to_string()),
         })
+    }
+
+    fn dependency(&self, _of: &str, _name: &str) -> Result<String, UnknownDependency> {
+        Err(UnknownDependency::default())
     }
 }
 

@@ -49,6 +49,9 @@ pub struct Metadata {
     /// The paths and texts of the scene and what it imports, in the order they were read.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sources: Vec<(String, String)>,
+    /// Keys of dependencies that go by another, shorter one.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub dependencies: BTreeMap<String, String>,
     /// The paths and bytes of other files that were read.
     #[serde(
         default,
@@ -197,6 +200,7 @@ mod tests {
             params: [("pen".to_owned(), "0.1mm".to_owned())].into(),
             options: [("dpi".to_owned(), "600.1".to_owned())].into(),
             sources: vec![("scene.kake".to_owned(), "// ]]> </metadata> \"&lt;\" \r\n\t\u{fffe}\0 影\n".to_owned())],
+            dependencies: [("ink/base".to_owned(), "base".to_owned())].into(),
             files: vec![("photo.png".to_owned(), (0..=255).collect())],
         }
     }

@@ -6,10 +6,13 @@
 //! what the scan converter resolves, so that neighbouring tiles agree about a mark that both of them hold. Bands of
 //! tiles are drawn by several threads; what they draw does not depend on how many there are.
 
+mod window;
+
 use rayon::prelude::*;
 use tiny_skia::{Mask, PathBuilder, Transform};
 
 pub use super::inking::Format;
+pub use window::{Index, Window, fitting, render as render_window};
 use super::inking::Inking;
 use super::outline::{Marks, Outliner, Scale, Tile};
 use crate::drawing::{Curves, Drawing, Layer};

@@ -1,5 +1,6 @@
 //! `kake check`: what is wrong with scenes.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
@@ -7,8 +8,9 @@ use serde_json::Value;
 
 use crate::diag::{Diagnostic, to_json};
 use crate::lower::lower;
+use crate::span::Sources;
 
-use super::files::{open, print};
+use super::files::{OpenError, open, print};
 use super::{Ended, SceneArgs, report};
 
 #[derive(Debug, Args)]
@@ -30,12 +32,31 @@ enum Format {
     Json,
 }
 
+/// Prints diagnostics, or puts them to those that are printed in the end.
+fn say(format: Format, diagnostics: &[Diagnostic], sources: &Sources, all: &mut Vec<Value>) {
+    match format {
+        Format::Human => {
+            report::diagnostics(diagnostics, sources);
+        }
+        Format::Json => match to_json(diagnostics, sources) {
+            Value::Array(list) => all.extend(list),
+            other => all.push(other),
+        },
+    }
+}
+
 pub(super) fn run(arguments: &CheckArgs) -> Ended {
     let mut ended = Ended::Done;
     let mut all = Vec::new();
+    let mut warned = BTreeSet::new();
     for scene in std::iter::once(&arguments.first.scene).chain(&arguments.more) {
         let opened = match open(scene, arguments.first.root.as_deref()) {
             Ok(opened) => opened,
+            Err(OpenError::Manifest(faults)) => {
+                say(arguments.format, &faults.diagnostics, &faults.sources, &mut all);
+                ended = if ended == Ended::Done { Ended::Fault } else { ended };
+                continue;
+            }
             Err(error) => {
                 ended = report::cannot_open(error);
                 continue;
@@ -44,15 +65,12 @@ pub(super) fn run(arguments: &CheckArgs) -> Ended {
         let mut config = arguments.first.config(None);
         super::picture::take_over(&mut config, &opened);
         let lowered = lower(&opened.path, &opened.loader, &config.lower);
-        match arguments.format {
-            Format::Human => {
-                report::diagnostics(&lowered.diagnostics, &lowered.sources);
-            }
-            Format::Json => match to_json(&lowered.diagnostics, &lowered.sources) {
-                Value::Array(list) => all.extend(list),
-                other => all.push(other),
-            },
+        // Several scenes of a library have the same dependencies.
+        if warned.insert(opened.loader.root().to_owned()) {
+            let (warnings, sources) = opened.loader.packages().unlocked();
+            say(arguments.format, &warnings, &sources, &mut all);
         }
+        say(arguments.format, &lowered.diagnostics, &lowered.sources, &mut all);
         if lowered.diagnostics.iter().any(Diagnostic::is_error) && ended == Ended::Done {
             ended = Ended::Fault;
         }

@@ -7,9 +7,11 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
 use crate::back::metadata::{self, Metadata};
-use crate::loader::{LoadError, Loader};
+use crate::library::MANIFEST;
+use crate::loader::{self, LoadError, Loader, UnknownDependency};
 
 use super::Ended;
+use super::packages::{Faults, Packages, is_foreign};
 
 /// The largest file that is read.
 const LARGEST: u64 = 1 << 30;
@@ -17,33 +19,56 @@ const LARGEST: u64 = 1 << 30;
 /// What a scene read from standard input is called.
 const STDIN: &str = "stdin.kake";
 
-/// Reads files below a root folder.
+/// Reads files below a root folder, and those of the libraries that the root's `kake.toml` depends on.
 #[derive(Debug)]
 pub(super) struct FsLoader {
     root: PathBuf,
     /// Files that stand in for those of the root: standard input, or what a picture holds.
     held: BTreeMap<String, Arc<[u8]>>,
+    packages: Packages,
+    /// Keys of dependencies that a picture knows by shorter ones.
+    aliases: BTreeMap<String, String>,
 }
 
 impl FsLoader {
-    /// Where a file lies on disk, if it is one: whether it is there or not.
+    /// Where the file of a name lies, as texts are called in `Sources`; none for what lies in no file: standard input,
+    /// what a picture holds, standard libraries and values from the command line.
     pub(super) fn place(&self, path: &str) -> Option<PathBuf> {
-        (!self.held.contains_key(path)).then(|| self.root.join(path))
-    }
-}
-
-impl Loader for FsLoader {
-    fn load(&self, path: &str) -> Result<Arc<[u8]>, LoadError> {
-        if let Some(bytes) = self.held.get(path) {
-            return Ok(Arc::clone(bytes));
+        if self.held.contains_key(path) || path.starts_with("--") {
+            return None;
         }
+        match loader::split(path) {
+            ("", path) => Some(self.root.join(path)),
+            (key, inside) => self.packages.get(key).map(|package| package.folder.join(inside)),
+        }
+    }
+
+    /// The root folder of what is read.
+    pub(super) fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// The libraries that files are read from.
+    pub(super) fn packages(&self) -> &Packages {
+        &self.packages
+    }
+
+    /// The keys of dependencies that stand for shorter ones.
+    pub(super) fn aliases(&self) -> BTreeMap<String, String> {
+        let mut aliases = self.packages.aliases();
+        aliases.extend(self.aliases.clone());
+        aliases
+    }
+
+    /// Reads a file below a folder.
+    fn read(folder: &Path, path: &str) -> Result<Arc<[u8]>, LoadError> {
         let unreadable = |error: io::Error| match error.kind() {
             io::ErrorKind::NotFound => LoadError::Missing,
             _ => LoadError::Unreadable(plain(&error)),
         };
-        // Links are followed first, so that none leads out of the root.
-        let full = self.root.join(path).canonicalize().map_err(unreadable)?;
-        if !full.starts_with(&self.root) {
+        // Links are followed first, so that none leads out of the folder.
+        let full = folder.join(path).canonicalize().map_err(unreadable)?;
+        if !full.starts_with(folder) {
             return Err(LoadError::Outside);
         }
         let kind = fs::metadata(&full).map_err(unreadable)?;
@@ -55,9 +80,36 @@ impl Loader for FsLoader {
         }
         Ok(fs::read(&full).map_err(unreadable)?.into())
     }
+}
+
+impl Loader for FsLoader {
+    fn load(&self, path: &str) -> Result<Arc<[u8]>, LoadError> {
+        if let Some(bytes) = self.held.get(path) {
+            return Ok(Arc::clone(bytes));
+        }
+        match loader::split(path) {
+            ("", _) => Self::read(&self.root, path),
+            (key, inside) => match self.packages.get(key) {
+                // What other programs keep in a dependency's folder is no part of it, nor is it locked.
+                Some(_) if is_foreign(inside) => Err(LoadError::Outside),
+                Some(package) => Self::read(&package.folder, inside),
+                None => Self::read(&self.root, path),
+            },
+        }
+    }
 
     fn library(&self, name: &str) -> Option<Arc<[u8]>> {
         self.held.get(name).cloned()
+    }
+
+    fn dependency(&self, of: &str, name: &str) -> Result<String, UnknownDependency> {
+        let chain = loader::key(of, name);
+        let key = self.aliases.get(&chain).cloned().unwrap_or(chain);
+        // What a picture holds needs no library on disk.
+        if self.held.keys().any(|held| loader::split(held).0 == key) {
+            return Ok(key);
+        }
+        self.packages.dependency(of, name)
     }
 }
 
@@ -78,6 +130,8 @@ pub(super) enum OpenError {
     Words(String, Ended),
     /// A picture that holds no scene.
     NoScene(String),
+    /// A library whose `kake.toml`, or that of a dependency, is at fault.
+    Manifest(Faults),
 }
 
 /// Finds a scene and the root of what it may read.
@@ -91,13 +145,15 @@ pub(super) fn open(scene: &Path, root: Option<&Path>) -> Result<Opened, OpenErro
         let root = root.unwrap_or(Path::new("."));
         let root = root.canonicalize().map_err(|error| failed(root, &error))?;
         let held = BTreeMap::from([(STDIN.to_owned(), Arc::from(text))]);
-        return Ok(Opened { loader: FsLoader { root, held }, path: STDIN.to_owned(), picture: None });
+        let packages = Packages::find(&root).map_err(OpenError::Manifest)?;
+        let loader = FsLoader { root, held, packages, aliases: BTreeMap::new() };
+        return Ok(Opened { loader, path: STDIN.to_owned(), picture: None });
     }
     let full = scene.canonicalize().map_err(|error| failed(scene, &error))?;
     let folder = full.parent().unwrap_or(&full).to_owned();
     let root = match root {
         Some(root) => root.canonicalize().map_err(|error| failed(root, &error))?,
-        None => folder.ancestors().find(|dir| dir.join("kake.toml").is_file()).unwrap_or(&folder).to_owned(),
+        None => folder.ancestors().find(|dir| dir.join(MANIFEST).is_file()).unwrap_or(&folder).to_owned(),
     };
     let extension = full.extension().unwrap_or_default().to_ascii_lowercase();
     if extension == "svg" || extension == "png" || extension == "pdf" {
@@ -109,18 +165,23 @@ pub(super) fn open(scene: &Path, root: Option<&Path>) -> Result<Opened, OpenErro
         let files = picture.files.iter().map(|(path, bytes)| (path.clone(), Arc::from(&bytes[..])));
         let held = texts.chain(files).collect();
         let path = picture.scene.clone();
-        return Ok(Opened { loader: FsLoader { root, held }, path, picture: Some(picture) });
+        // What is wrong with a library that the picture happens to lie in does not matter to what it holds.
+        let packages = Packages::find(&root).unwrap_or_else(|_| Packages::alone(&root));
+        let loader = FsLoader { root, held, packages, aliases: picture.dependencies.clone() };
+        return Ok(Opened { loader, path, picture: Some(picture) });
     }
     let Ok(inside) = full.strip_prefix(&root) else {
         let message = format!("{} does not lie below the root {}", scene.display(), root.display());
         return Err(OpenError::Words(message, Ended::Usage));
     };
     let path = slashed(inside);
-    Ok(Opened { loader: FsLoader { root, held: BTreeMap::new() }, path, picture: None })
+    let packages = Packages::find(&root).map_err(OpenError::Manifest)?;
+    let loader = FsLoader { root, held: BTreeMap::new(), packages, aliases: BTreeMap::new() };
+    Ok(Opened { loader, path, picture: None })
 }
 
 /// A relative path with forward slashes.
-fn slashed(path: &Path) -> String {
+pub(super) fn slashed(path: &Path) -> String {
     let parts = path.components().filter_map(|part| match part {
         Component::Normal(part) => Some(part.to_string_lossy()),
         _ => None,

@@ -12,9 +12,13 @@ mod experiment;
 mod explain;
 mod files;
 mod fmt;
+mod gallery;
 mod ir;
 mod limits;
+mod man;
+mod lock;
 mod metrics;
+mod packages;
 mod params;
 mod picture;
 mod preview;
@@ -57,9 +61,19 @@ impl From<Ended> for ExitCode {
     }
 }
 
-/// A compiler for kakeami, manga's hand-hatched tone.
+/// What ends the help and the manual page of the program.
+const EXIT_STATUS: &str = "\
+Exit status: 0 done; 1 the scene is at fault, or a test, check or comparison of it failed; 2 the command line is at fault; \
+3 reading or writing failed.
+
+Results go to standard output, words about them to standard error. `-` is standard input or output.";
+
+/// A compiler for kakeami, manga's hand-hatched tone
+///
+/// Kakeami is manga's hatching: small tiles of parallel strokes, each turned against its neighbours. A scene, in a small
+/// language or in TOML, describes regions, tile shapes, fills, fields and seeds; what comes out is SVG, PNG or PDF.
 #[derive(Debug, Parser)]
-#[command(name = "kake", version, max_term_width = 100, arg_required_else_help = true)]
+#[command(name = "kake", version, max_term_width = 100, arg_required_else_help = true, after_long_help = EXIT_STATUS)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -87,10 +101,16 @@ enum Command {
     Wedge(wedge::WedgeArgs),
     /// Run a scene's experiment: every condition with every seed, measured, analysed and pictured
     Experiment(Box<experiment::ExperimentArgs>),
+    /// Show tones and scenes on a page and a contact sheet
+    Gallery(gallery::GalleryArgs),
+    /// Lock what a library depends on: writes the hashes of its dependencies into kake.lock
+    Lock(lock::LockArgs),
     /// Explain a diagnostic's code, or list them all
     Explain(explain::ExplainArgs),
     /// Print a completion script for a shell
     Completions(CompletionsArgs),
+    /// Print the manual page, or write one for each command
+    Man(man::ManArgs),
 }
 
 #[derive(Debug, Args)]
@@ -148,12 +168,15 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Metrics(arguments) => metrics::run(&arguments),
         Command::Wedge(arguments) => wedge::run(&arguments),
         Command::Experiment(arguments) => experiment::run(&arguments),
+        Command::Gallery(arguments) => gallery::run(&arguments),
+        Command::Lock(arguments) => lock::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Completions(arguments) => {
             let mut script = Vec::new();
             clap_complete::generate(arguments.shell, &mut Cli::command(), "kake", &mut script);
             files::print(&script)
         }
+        Command::Man(arguments) => man::run(&arguments),
     };
     ended.into()
 }

@@ -124,6 +124,7 @@ pub(super) fn metadata(
         params: config.lower.sets.iter().cloned().collect(),
         options,
         sources: sources(&compiled.lowered),
+        dependencies: opened.loader.aliases(),
         files: match embed {
             Embed::All => compiled.lowered.files.iter().map(|(path, bytes)| (path.clone(), bytes.to_vec())).collect(),
             Embed::Text | Embed::None => Vec::new(),

@@ -121,6 +121,19 @@ codes! {
         "Scenes come from strangers, so loops, tiles, strokes and pictures have limits. `--limit name=value` lifts one."
     Import "import" "A file cannot be imported"
         "Imports are scenes in `.kake` or `.toml`, found from the folder of the file that names them."
+    Manifest "manifest" "The manifest of a library is at fault"
+        "`kake.toml` stands in the root folder of a library. It may be empty; then it only marks the root. `[library]` has \
+         a `name`, a `version` and an `edition`; `[dependencies]` names other libraries by the paths of their folders: \
+         `ink = { path = \"../ink\" }`. `docs/libraries.md` says more."
+    Dependency "dependency" "A library has no such dependency"
+        "A path such as `\"ink:tones/wash.kake\"` names a file of the library that `kake.toml` calls `ink` under \
+         `[dependencies]`. Every library sees its own dependencies only."
+    Lock "lock" "A dependency is not what was locked"
+        "`kake.lock` holds what the dependencies' files were when `kake lock` was last run. Other files make other pictures. \
+         Where the change is wanted, run `kake lock`; otherwise bring the dependency back to what it was."
+    Pin "pin" "A pin cannot be read"
+        "`pins/NAME.toml` holds what a swatch looked like when it was last accepted. It is written by `kake test --accept`, \
+         which also replaces one that was damaged."
     File "file" "A file cannot be read"
         "Paths are found from the folder of the file that names them."
     Outside "outside-root" "A path leads out of the scene's root"

@@ -116,6 +116,7 @@ fn draw(recipe: &Recipe, settings: [&[Setting]; 2], seed: u64) -> Result<Vec<u8>
         params: config.lower.sets.iter().cloned().collect(),
         options,
         sources: texts.map(|(_, source)| (source.name.clone(), source.text.to_string())).collect(),
+        dependencies: recipe.dependencies.clone(),
         files: Vec::new(),
     };
     let mut bytes = Vec::new();

@@ -3,6 +3,8 @@
 //! In: the path of a scene, a loader, what the command line sets. Out: the plan of the experiment that is asked for, and a
 //! recipe that holds every file that some condition or picture of it reads.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 
 use crate::diag::{Code, Diagnostic, did_you_mean};
@@ -58,11 +60,13 @@ pub fn prepare<L: Loader>(path: &str, loader: &L, config: &Config, request: &Req
         only: config.only.clone(),
         limits: Recipe::named(&config.lower.limits),
         files: recorder.files(),
+        dependencies: BTreeMap::new(),
     };
     // What a picture was built with does not stand against what the experiment varies.
     recipe.sets.retain(|(name, _)| plan.factors.iter().all(|factor| factor.param != *name));
     read(&recipe, &plan, &recorder);
     recipe.files = recorder.files();
+    recipe.dependencies = recorder.dependencies();
     Prepared { lowered, ready: Some((recipe, plan)) }
 }
 

@@ -12,7 +12,7 @@ use base64::engine::general_purpose::STANDARD as BASE64;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::Config;
-use crate::loader::{LoadError, Loader};
+use crate::loader::{self, LoadError, Loader, UnknownDependency};
 use crate::lower::LowerConfig;
 use crate::scene::Limits;
 
@@ -43,6 +43,9 @@ pub struct Recipe {
     pub limits: BTreeMap<String, u64>,
     /// Every file by its path from the root; libraries by the names they are imported by.
     pub files: BTreeMap<String, Bytes>,
+    /// Keys of dependencies that go by another, shorter one.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub dependencies: BTreeMap<String, String>,
 }
 
 /// The bytes of a file: text stays legible where it is serialised.
@@ -128,46 +131,72 @@ impl Loader for Recipe {
     fn library(&self, name: &str) -> Option<Arc<[u8]>> {
         self.files.get(name).map(|bytes| Arc::clone(&bytes.0))
     }
+
+    fn dependency(&self, of: &str, name: &str) -> Result<String, UnknownDependency> {
+        let key = loader::key(of, name);
+        Ok(self.dependencies.get(&key).cloned().unwrap_or(key))
+    }
 }
 
 /// Keeps every file that is read through it, and reads each once.
 #[derive(Debug)]
 pub struct Recorder<'a, L: ?Sized> {
     loader: &'a L,
-    files: Mutex<BTreeMap<String, Bytes>>,
+    kept: Mutex<Kept>,
+}
+
+/// What was read, and which dependencies go by shorter keys.
+#[derive(Debug, Default)]
+struct Kept {
+    files: BTreeMap<String, Bytes>,
+    dependencies: BTreeMap<String, String>,
 }
 
 impl<'a, L: Loader + ?Sized> Recorder<'a, L> {
     /// Reads through a loader.
     #[must_use]
     pub fn new(loader: &'a L) -> Self {
-        Self { loader, files: Mutex::default() }
+        Self { loader, kept: Mutex::default() }
     }
 
     /// What was read so far.
     #[must_use]
     pub fn files(&self) -> BTreeMap<String, Bytes> {
-        self.lock().clone()
+        self.lock().files.clone()
     }
 
-    fn lock(&self) -> MutexGuard<'_, BTreeMap<String, Bytes>> {
-        self.files.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Keys of dependencies that go by another, shorter one.
+    #[must_use]
+    pub fn dependencies(&self) -> BTreeMap<String, String> {
+        self.lock().dependencies.clone()
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Kept> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl<L: Loader + ?Sized> Loader for Recorder<'_, L> {
     fn load(&self, path: &str) -> Result<Arc<[u8]>, LoadError> {
-        if let Some(known) = self.lock().get(path) {
+        if let Some(known) = self.lock().files.get(path) {
             return Ok(Arc::clone(&known.0));
         }
         let bytes = self.loader.load(path)?;
-        self.lock().insert(path.to_owned(), Bytes(Arc::clone(&bytes)));
+        self.lock().files.insert(path.to_owned(), Bytes(Arc::clone(&bytes)));
         Ok(bytes)
     }
 
     fn library(&self, name: &str) -> Option<Arc<[u8]>> {
         let bytes = self.loader.library(name)?;
-        self.lock().insert(name.to_owned(), Bytes(Arc::clone(&bytes)));
+        self.lock().files.insert(name.to_owned(), Bytes(Arc::clone(&bytes)));
         Some(bytes)
+    }
+
+    fn dependency(&self, of: &str, name: &str) -> Result<String, UnknownDependency> {
+        let (chain, found) = (loader::key(of, name), self.loader.dependency(of, name)?);
+        if found != chain {
+            self.lock().dependencies.insert(chain, found.clone());
+        }
+        Ok(found)
     }
 }

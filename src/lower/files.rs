@@ -13,7 +13,7 @@ use crate::region::svg::{Lack, Selection, SvgError, SvgFile, hex, ink, outlines}
 use crate::scene::{Cap, Colour, InkMark, InkShape};
 
 use super::call::Call;
-use super::modules::{self, ROOT_HINT};
+use super::modules;
 use super::value::Value;
 
 /// Standard deviations below so many samples change nothing that is seen.
@@ -30,10 +30,13 @@ fn read(call: &mut Call<'_, '_, '_>) -> Option<(String, Arc<[u8]>)> {
     let Some(Value::String(text)) = call.value("file") else { return None };
     let span = call.span_of("file");
     let from = call.cx.path_of(text.source);
-    let Some(path) = loader::resolve(from, &text.value) else {
-        let message = modules::outside(&text.value);
-        call.cx.report_value(Diagnostic::error(Code::Outside, span, message).hint(ROOT_HINT));
-        return None;
+    let path = match loader::find(call.cx.loader, from, &text.value) {
+        Ok(path) => path,
+        Err(unfound) => {
+            let (code, message, hint) = modules::not_found(from, &text.value, &unfound);
+            call.cx.report_value(Diagnostic::error(code, span, message).hint(hint));
+            return None;
+        }
     };
     if let Some(bytes) = call.cx.file(&path) {
         return Some((path, bytes));

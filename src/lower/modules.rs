@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 use std::sync::Arc;
 
-use crate::diag::{Code, Diagnostic};
-use crate::loader::{self, LoadError, Loader};
+use crate::diag::{Code, Diagnostic, did_you_mean};
+use crate::loader::{self, LoadError, Loader, Unfound};
 use crate::span::{Sources, Span, Syntax};
 use crate::syntax::ast::{Document, ExprKind, StatementKind, Text, ToneBody};
 use crate::syntax::{self, ast, kake};
@@ -139,11 +139,14 @@ impl Reader<'_> {
         if library::is_library(&text.value) {
             return Some(text.value.clone());
         }
-        let target = loader::resolve(path, &text.value);
-        if target.is_none() {
-            self.report(Code::Outside, Some(text.span), outside(&text.value), Some(ROOT_HINT.to_owned()));
+        match loader::find(self.loader, path, &text.value) {
+            Ok(target) => Some(target),
+            Err(unfound) => {
+                let (code, message, hint) = not_found(path, &text.value, &unfound);
+                self.report(code, Some(text.span), message, Some(hint));
+                None
+            }
         }
-        target
     }
 
     /// The text of a standard library.
@@ -227,20 +230,49 @@ impl Reader<'_> {
 pub(super) fn load_error(path: &str, error: &LoadError) -> (Code, String, Option<String>) {
     match error {
         LoadError::Missing => (Code::File, format!("there is no file `{path}`"), Some(PATH_HINT.to_owned())),
-        LoadError::Outside => (Code::Outside, outside(path), Some(ROOT_HINT.to_owned())),
+        LoadError::Outside => {
+            let hint = if loader::split(path).0.is_empty() { ROOT_HINT } else { LIBRARY_HINT };
+            (Code::Outside, outside(path), Some(hint.to_owned()))
+        }
         LoadError::Unreadable(why) => (Code::File, format!("`{path}` cannot be read: {why}"), None),
     }
 }
 
-/// What to say of a path that leads out of the root.
-pub(super) fn outside(path: &str) -> String {
-    format!("`{path}` leads out of the scene's root folder")
+/// What to say of a path in the file `from` that names no file.
+pub(super) fn not_found(from: &str, path: &str, unfound: &Unfound) -> (Code, String, String) {
+    let (of, _) = loader::split(from);
+    let (name, known) = match unfound {
+        Unfound::Outside if of.is_empty() && !path.contains(':') => {
+            return (Code::Outside, outside(path), ROOT_HINT.to_owned());
+        }
+        Unfound::Outside => return (Code::Outside, outside(path), LIBRARY_HINT.to_owned()),
+        Unfound::NoDependency { name, known } => (name, known),
+    };
+    let message = format!("there is no dependency `{name}`");
+    let manifest = loader::join(of, "kake.toml");
+    let hint = did_you_mean(name, known.iter().map(String::as_str)).unwrap_or_else(|| match known.as_slice() {
+        [] => format!("`{manifest}` declares it: `[dependencies]` and `{name} = {{ path = \"../{name}\" }}`"),
+        known => {
+            let known: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
+            format!("`{manifest}` declares {}", known.join(", "))
+        }
+    });
+    (Code::Dependency, message, hint)
+}
+
+/// What to say of a path that leads out of its library.
+fn outside(path: &str) -> String {
+    match loader::split(path) {
+        ("", _) => format!("`{path}` leads out of the scene's root folder"),
+        (key, _) => format!("`{path}` leads out of the folder of the dependency `{key}`"),
+    }
 }
 
 const PATH_HINT: &str = "paths start at the folder of the file that names them";
 /// How to reach files outside the root.
-pub(super) const ROOT_HINT: &str =
-    "a scene reads only files below its root; `--root DIR` or a `kake.toml` further up widens it";
+const ROOT_HINT: &str = "a scene reads only files below its root; `--root DIR` or a `kake.toml` further up widens it";
+/// What libraries may read.
+const LIBRARY_HINT: &str = "a library reads files in its own folder, and in those of the dependencies it declares";
 
 /// Makes the tables of every file, and reports names that are declared twice.
 pub(super) fn declare<'a>(files: &'a [File], diagnostics: &mut Vec<Diagnostic>) -> Vec<Module<'a>> {

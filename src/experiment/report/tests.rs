@@ -37,6 +37,7 @@ fn recipe() -> Recipe {
         only: None,
         limits: BTreeMap::new(),
         files: BTreeMap::from([("a<b>.kake".to_owned(), Bytes(b"// 1 < 2 && <script>".as_slice().into()))]),
+        dependencies: BTreeMap::new(),
     }
 }
 

@@ -87,6 +87,7 @@
 //!   keys as the file: `let.row = "i * 2"`.
 //! - In a multi-line string of plain text the line end before the closing quotes does not count.
 
+pub mod data;
 mod draw;
 mod encode;
 mod guard;

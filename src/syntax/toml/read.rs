@@ -14,12 +14,12 @@ use crate::syntax::ast::{Binding, Doc, Document, Expr, ExprKind, Ident, Property
 /// Reads a scene in TOML. The document holds whatever could be read; the diagnostics say what could not.
 #[must_use]
 pub fn read(source: SourceId, text: &str) -> (Document, Vec<Diagnostic>) {
-    let mut reader = Reader { source, text, diagnostics: Vec::new(), depth: 0, is_sound: true, unclosed: Vec::new() };
+    let mut reader = Reader::new(source, text);
     let mut statements = Vec::new();
     if let Some(text) = reader.closed_text() {
         let (table, errors) = DeTable::parse_recoverable(&text);
         for error in errors {
-            reader.syntax_error(&error);
+            reader.syntax_error(&error, "expressions of the language stand in quotes");
         }
         reader.file(table.get_ref(), &mut statements);
     }
@@ -60,6 +60,11 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
+    /// At the beginning of a text.
+    pub(super) fn new(source: SourceId, text: &'a str) -> Self {
+        Self { source, text, diagnostics: Vec::new(), depth: 0, is_sound: true, unclosed: Vec::new() }
+    }
+
     /// The span of a range of bytes. The parser of TOML counts a bad escape as two bytes, whatever the second begins.
     pub(super) fn span(&self, range: std::ops::Range<usize>) -> Span {
         let length = self.text.len();
@@ -110,7 +115,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The text without the values that are not closed; none if it is nested too deeply.
-    fn closed_text(&mut self) -> Option<Cow<'a, str>> {
+    pub(super) fn closed_text(&mut self) -> Option<Cow<'a, str>> {
         let mut text = Cow::Borrowed(self.text);
         loop {
             let nesting = guard::measure(&text);
@@ -132,7 +137,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn syntax_error(&mut self, error: &toml::de::Error) {
+    /// Reports an error of the TOML parser; `quotes` says what stands in quotes.
+    pub(super) fn syntax_error(&mut self, error: &toml::de::Error, quotes: &str) {
         self.is_sound = false;
         let span = self.span(error.span().unwrap_or(0..0));
         let message = error.message();
@@ -143,8 +149,7 @@ impl<'a> Reader<'a> {
                 Diagnostic::error(Code::Syntax, span, "expected a value")
             }
             _ if message.starts_with("string values must be quoted") => {
-                Diagnostic::error(Code::Syntax, span, format!("`{under}` is no value of TOML"))
-                    .hint("expressions of the language stand in quotes")
+                Diagnostic::error(Code::Syntax, span, format!("`{under}` is no value of TOML")).hint(quotes)
             }
             _ => Diagnostic::error(Code::Syntax, span, message),
         });
