@@ -71,7 +71,12 @@ function text(label, give) {
 function numbers({ range, default: own }, label, give) {
   const unit = range?.unit ?? quantity(own)?.unit ?? "";
   const step = range ? niceStep(range.from, range.to) : stepOf(quantity(own)?.value ?? 1);
-  const clamp = (value) => (range ? Math.min(range.to, Math.max(range.from, value)) : value);
+  // A rounded number must not leave the range that it was in.
+  const plainly = (value) => {
+    const text = toStep(value, step);
+    if (!range) return text;
+    return Number(text) >= range.to ? String(range.to) : Number(text) <= range.from ? String(range.from) : text;
+  };
   const withUnit = (text) => (quantity(text)?.unit === "" ? text.trim() + unit : text);
   const number = box(label, (text) => give(withUnit(text)), { inputMode: "decimal" });
   const slider = range
@@ -83,7 +88,7 @@ function numbers({ range, default: own }, label, give) {
     slider.setAttribute("aria-valuetext", `${toStep(Number(slider.value), step)} ${unit}`.trim());
   };
   const take = (value) => {
-    const plain = toStep(clamp(value), step);
+    const plain = plainly(value);
     number.put(plain);
     if (slider) {
       slider.value = plain;
@@ -92,8 +97,9 @@ function numbers({ range, default: own }, label, give) {
     give(plain + unit);
   };
   slider?.addEventListener("input", () => {
-    // A slider's steps count from its least value; at the ends it reaches the ends themselves.
-    take(Number(slider.value));
+    // The last whole step may lie before the end.
+    const value = Number(slider.value);
+    take(value + step > range.to ? range.to : value);
   });
   number.input.addEventListener("keydown", (event) => {
     const ways = { ArrowUp: 1, ArrowDown: -1, PageUp: 10, PageDown: -10 };

@@ -89,6 +89,7 @@ export class Tiles {
     const far = ([x, y]) => Math.hypot(x - (left + right) / 2, y - (top + bottom) / 2);
     wanted.sort((a, b) => far(a) - far(b));
     this.#forget(level, { left, right, top, bottom });
+    this.#giveUp(z);
     return Promise.all(wanted.map(([x, y]) => this.#tile(level, z, x, y)));
   }
 
@@ -134,6 +135,18 @@ export class Tiles {
       tile.abort.abort();
       tile.image?.remove();
       level.delete(key);
+    }
+  }
+
+  /** Asks no more for tiles of other levels. */
+  #giveUp(z) {
+    for (const [other, level] of this.#levels) {
+      if (other === z) continue;
+      for (const [key, tile] of level) {
+        if (tile.image) continue;
+        tile.abort.abort();
+        level.delete(key);
+      }
     }
   }
 
