@@ -12,11 +12,11 @@ use rayon::prelude::*;
 use tiny_skia::{Mask, PathBuilder, Transform};
 
 pub use super::inking::Format;
-pub use window::{Index, Window, fitting, render as render_window};
 use super::inking::Inking;
 use super::outline::{Marks, Outliner, Scale, Tile};
 use crate::drawing::{Curves, Drawing, Layer};
 use crate::scene::Colour;
+pub use window::{Index, Window, fitting, render as render_window};
 
 /// Width of a tile in pixels; the scan converter works on up to 8191.
 const TILE_WIDTH: usize = 2_048;

@@ -4,6 +4,7 @@ mod batch;
 mod job;
 mod output;
 mod vary;
+mod watching;
 
 use std::path::{Path, PathBuf};
 
@@ -12,13 +13,14 @@ use clap::builder::PossibleValuesParser;
 
 use crate::overlay::Overlay;
 
-use super::files::open;
+use super::files::{Opened, open};
 use super::picture::{Embed, Form, NO_OVERLAY};
 use super::progress::Progress;
 use super::{Ended, SceneArgs, report};
 
 use job::Job;
-pub(super) use output::{Kind, cannot_write, kind_of, safe, write};
+pub(super) use job::check_pixels;
+pub(super) use output::{Kind, cannot_write, fill, kind_of, safe, write};
 use output::{expanded, same_file};
 pub(super) use vary::{Vary, parse as parse_vary};
 
@@ -69,6 +71,9 @@ pub(super) struct BuildArgs {
     /// Say how long each step took
     #[arg(long)]
     timings: bool,
+    /// Build again whenever the scene, an import or an image is saved, until Ctrl-C
+    #[arg(long)]
+    watch: bool,
 }
 
 /// First and last seed.
@@ -103,16 +108,23 @@ pub(super) fn run(arguments: &BuildArgs) -> Ended {
         // Fails only where the pool is there already, which nothing before this makes.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global();
     }
-    let opened = match open(&arguments.scene.scene, arguments.scene.root.as_deref()) {
-        Ok(opened) => opened,
-        Err(error) => return report::cannot_open(error),
-    };
+    if arguments.watch {
+        return watching::run(arguments);
+    }
+    match open(&arguments.scene.scene, arguments.scene.root.as_deref()) {
+        Ok(opened) => build(arguments, &opened),
+        Err(error) => report::cannot_open(error),
+    }
+}
+
+/// Builds once.
+fn build(arguments: &BuildArgs, opened: &Opened) -> Ended {
     report::locks(opened.loader.packages());
     if arguments.seeds.is_some() || !arguments.vary.is_empty() || arguments.sheet.is_some() {
-        return batch::run(arguments, &opened);
+        return batch::run(arguments, opened);
     }
     let mut progress = Progress::new();
-    let job = Job::new(arguments, &opened, (arguments.seed, &[]), single(arguments));
+    let job = Job::new(arguments, opened, (arguments.seed, &[]), single(arguments));
     let done = job.run(&mut progress);
     let spent = progress.finish();
     eprint!("{}", done.words);
@@ -169,6 +181,9 @@ fn check(arguments: &BuildArgs) -> Result<(), String> {
         if same_file(output, scene) {
             return Err(format!("{} is the scene itself", output.display()));
         }
+    }
+    if arguments.watch && (scene == Path::new("-") || outputs.iter().any(|output| output == Path::new("-"))) {
+        return Err("`--watch` follows a file and writes files; - is none".to_owned());
     }
     vary::check(arguments)
 }

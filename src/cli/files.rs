@@ -4,14 +4,15 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Component, Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::back::metadata::{self, Metadata};
-use crate::library::MANIFEST;
+use crate::library::{LOCK, MANIFEST};
 use crate::loader::{self, LoadError, Loader, UnknownDependency};
 
 use super::Ended;
 use super::packages::{Faults, Packages, is_foreign};
+use super::watch::{Stamp, Stamps};
 
 /// The largest file that is read.
 const LARGEST: u64 = 1 << 30;
@@ -28,6 +29,8 @@ pub(super) struct FsLoader {
     packages: Packages,
     /// Keys of dependencies that a picture knows by shorter ones.
     aliases: BTreeMap<String, String>,
+    /// The files that were asked for, those that are missing too, as they stood just before.
+    asked: Mutex<Stamps>,
 }
 
 impl FsLoader {
@@ -60,6 +63,20 @@ impl FsLoader {
         aliases
     }
 
+    /// Every file that mattered so far, the libraries' manifests included: when one of them changes, so may the picture.
+    pub(super) fn followed(&self) -> Stamps {
+        let mut stamps = self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let folders = self.packages.dependencies().iter().map(|package| package.folder.as_path());
+        for folder in folders.chain([self.root.as_path()]) {
+            for name in [MANIFEST, LOCK] {
+                let path = folder.join(name);
+                let stamp = Stamp::of(&path);
+                stamps.entry(path).or_insert(stamp);
+            }
+        }
+        stamps
+    }
+
     /// Reads a file below a folder.
     fn read(folder: &Path, path: &str) -> Result<Arc<[u8]>, LoadError> {
         let unreadable = |error: io::Error| match error.kind() {
@@ -86,6 +103,10 @@ impl Loader for FsLoader {
     fn load(&self, path: &str) -> Result<Arc<[u8]>, LoadError> {
         if let Some(bytes) = self.held.get(path) {
             return Ok(Arc::clone(bytes));
+        }
+        if let Some(place) = self.place(path) {
+            let stamp = Stamp::of(&place);
+            self.asked.lock().unwrap_or_else(PoisonError::into_inner).entry(place).or_insert(stamp);
         }
         match loader::split(path) {
             ("", _) => Self::read(&self.root, path),
@@ -146,7 +167,7 @@ pub(super) fn open(scene: &Path, root: Option<&Path>) -> Result<Opened, OpenErro
         let root = root.canonicalize().map_err(|error| failed(root, &error))?;
         let held = BTreeMap::from([(STDIN.to_owned(), Arc::from(text))]);
         let packages = Packages::find(&root).map_err(OpenError::Manifest)?;
-        let loader = FsLoader { root, held, packages, aliases: BTreeMap::new() };
+        let loader = FsLoader { root, held, packages, aliases: BTreeMap::new(), asked: Mutex::default() };
         return Ok(Opened { loader, path: STDIN.to_owned(), picture: None });
     }
     let full = scene.canonicalize().map_err(|error| failed(scene, &error))?;
@@ -167,7 +188,7 @@ pub(super) fn open(scene: &Path, root: Option<&Path>) -> Result<Opened, OpenErro
         let path = picture.scene.clone();
         // What is wrong with a library that the picture happens to lie in does not matter to what it holds.
         let packages = Packages::find(&root).unwrap_or_else(|_| Packages::alone(&root));
-        let loader = FsLoader { root, held, packages, aliases: picture.dependencies.clone() };
+        let loader = FsLoader { root, held, packages, aliases: picture.dependencies.clone(), asked: Mutex::default() };
         return Ok(Opened { loader, path, picture: Some(picture) });
     }
     let Ok(inside) = full.strip_prefix(&root) else {
@@ -176,7 +197,7 @@ pub(super) fn open(scene: &Path, root: Option<&Path>) -> Result<Opened, OpenErro
     };
     let path = slashed(inside);
     let packages = Packages::find(&root).map_err(OpenError::Manifest)?;
-    let loader = FsLoader { root, held: BTreeMap::new(), packages, aliases: BTreeMap::new() };
+    let loader = FsLoader { root, held: BTreeMap::new(), packages, aliases: BTreeMap::new(), asked: Mutex::default() };
     Ok(Opened { loader, path, picture: None })
 }
 
@@ -275,6 +296,14 @@ pub(super) fn replace(target: &Path, text: &str) -> Ended {
 }
 
 impl Pending {
+    /// Moves the file to its place, if no other has come there meanwhile.
+    pub(super) fn keep_new(self) -> io::Result<()> {
+        match self.file {
+            Written::Beside(file) => file.persist_noclobber(&self.target).map_err(|error| error.error),
+            Written::Straight => Ok(()),
+        }
+    }
+
     /// Moves the file to its place.
     pub(super) fn keep(self) -> io::Result<()> {
         match self.file {

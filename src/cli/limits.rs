@@ -33,7 +33,8 @@ impl Limit {
 /// The root and the limits of a command line as they are written there.
 pub(super) fn written(arguments: &SceneArgs) -> Vec<String> {
     let root = arguments.root.iter().flat_map(|root| ["--root".to_owned(), root.to_string_lossy().into_owned()]);
-    let limits = arguments.limit.iter().flat_map(|(limit, value)| ["--limit".to_owned(), format!("{}={value}", limit.name())]);
+    let limits =
+        arguments.limit.iter().flat_map(|(limit, value)| ["--limit".to_owned(), format!("{}={value}", limit.name())]);
     root.chain(limits).collect()
 }
 

@@ -16,10 +16,6 @@ use std::time::{Duration, Instant, SystemTime};
 
 use notify::{RecommendedWatcher, RecursiveMode, Watcher};
 
-use crate::loader::{LoadError, Loader};
-
-use super::files::FsLoader;
-
 /// How long nothing happens before files are looked at: saving takes several steps.
 const QUIET: Duration = Duration::from_millis(25);
 
@@ -55,38 +51,6 @@ fn number(_file: &fs::Metadata) -> u64 {
     0
 }
 
-/// Reads files and keeps how they stood just before.
-pub(super) struct Recorded<'a> {
-    loader: &'a FsLoader,
-    stamps: Mutex<Stamps>,
-}
-
-impl<'a> Recorded<'a> {
-    /// Nothing is read as yet.
-    pub(super) fn new(loader: &'a FsLoader) -> Self {
-        Self { loader, stamps: Mutex::default() }
-    }
-
-    /// Every file that was asked for, those that are missing too.
-    pub(super) fn stamps(self) -> Stamps {
-        self.stamps.into_inner().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl Loader for Recorded<'_> {
-    fn load(&self, path: &str) -> Result<Arc<[u8]>, LoadError> {
-        if let Some(place) = self.loader.place(path) {
-            let stamp = Stamp::of(&place);
-            self.stamps.lock().unwrap_or_else(PoisonError::into_inner).entry(place).or_insert(stamp);
-        }
-        self.loader.load(path)
-    }
-
-    fn library(&self, name: &str) -> Option<Arc<[u8]>> {
-        self.loader.library(name)
-    }
-}
-
 /// Follows files until it is dropped.
 pub(super) struct Watch {
     followed: Arc<Mutex<Followed>>,
@@ -115,8 +79,7 @@ impl Watch {
                 let _ = notice.send(());
             }
         });
-        let followed =
-            Followed { stamps: Stamps::new(), folders: BTreeSet::new(), watcher: watcher.ok() };
+        let followed = Followed { stamps: Stamps::new(), folders: BTreeSet::new(), watcher: watcher.ok() };
         let followed = Arc::new(Mutex::new(followed));
         let seen = Arc::downgrade(&followed);
         thread::Builder::new().name("watch".to_owned()).spawn(move || {

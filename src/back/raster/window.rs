@@ -140,10 +140,7 @@ fn seen<'a>(
 ) -> (Vec<Item<'a>>, Vec<Rect>) {
     // A pixel more than is seen on each side: rounding moves marks by less.
     let at = |pixels: [u32; 2], more: f64| {
-        Point::new(
-            (f64::from(pixels[0]) + more) / window.per_mm,
-            (f64::from(pixels[1]) + more) / window.per_mm,
-        )
+        Point::new((f64::from(pixels[0]) + more) / window.per_mm, (f64::from(pixels[1]) + more) / window.per_mm)
     };
     let end = [0, 1].map(|i| window.corner[i].saturating_add(window.size[i]));
     let sight = Rect::new(at(window.corner, -1.0), at(end, 1.0));

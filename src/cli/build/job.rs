@@ -131,7 +131,7 @@ impl<'a> Job<'a> {
 }
 
 /// A picture of more pixels than the limit is not drawn.
-fn check_pixels(compiled: &mut Compiled, limits: &Limits) {
+pub(in crate::cli) fn check_pixels(compiled: &mut Compiled, limits: &Limits) {
     let Some(drawing) = &compiled.drawing else { return };
     let [width, height] = drawing.page.pixels;
     let most = limits.megapixels.saturating_mul(1_000_000);

@@ -34,7 +34,7 @@ pub(in crate::cli) fn kind_of(output: &Path) -> Result<Kind, String> {
 }
 
 impl Kind {
-    pub(super) fn name(self) -> &'static str {
+    pub(in crate::cli) fn name(self) -> &'static str {
         match self {
             Self::Svg => "svg",
             Self::Png => "png",
@@ -71,21 +71,8 @@ pub(in crate::cli) fn write(
     (kind, form): (Kind, Form),
     target: &Path,
 ) -> io::Result<Option<Pending>> {
-    let fill = |out: &mut dyn Write| match kind {
-        Kind::Svg => match form {
-            Form::Page => svg::write(drawing, metadata, out),
-            Form::Pattern => {
-                let stem = target.file_stem().unwrap_or_default().to_string_lossy();
-                svg::write_pattern(drawing, &stem, metadata, out)
-            }
-        },
-        Kind::Pdf => pdf::write(drawing, metadata, out),
-        Kind::Json => json::write(drawing, out),
-        Kind::Png => png::write(drawing, metadata, out).map_err(|error| match error {
-            png::PngError::Io(error) => error,
-            png::PngError::Format(message) => io::Error::other(message),
-        }),
-    };
+    let stem = target.file_stem().unwrap_or_default().to_string_lossy();
+    let fill = |out: &mut dyn Write| fill(drawing, metadata, (kind, form), &stem, out);
     if target == Path::new("-") {
         let mut bytes = Vec::new();
         fill(&mut bytes)?;
@@ -96,6 +83,28 @@ pub(in crate::cli) fn write(
         };
     }
     write_beside(target, fill).map(Some)
+}
+
+/// Writes the bytes of an output; `stem` names the pattern of a swatch.
+pub(in crate::cli) fn fill(
+    drawing: &Drawing,
+    metadata: Option<&Metadata>,
+    (kind, form): (Kind, Form),
+    stem: &str,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    match kind {
+        Kind::Svg => match form {
+            Form::Page => svg::write(drawing, metadata, out),
+            Form::Pattern => svg::write_pattern(drawing, stem, metadata, out),
+        },
+        Kind::Pdf => pdf::write(drawing, metadata, out),
+        Kind::Json => json::write(drawing, out),
+        Kind::Png => png::write(drawing, metadata, out).map_err(|error| match error {
+            png::PngError::Io(error) => error,
+            png::PngError::Format(message) => io::Error::other(message),
+        }),
+    }
 }
 
 /// The name of an output with what `{…}` stands for. `value` gives it for a name.

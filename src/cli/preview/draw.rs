@@ -98,9 +98,12 @@ pub(super) fn draw(session: &Session, wanted: &Wanted, stop: &Stop, progress: Pr
         Ok(made) => made,
         Err(Unmade::Nonsense(words)) => return Err(words),
         Err(Unmade::NoScene(words)) => {
-            let diagnostic = Diagnostic::without_span(Code::File, words)
-                .hint("it is shown again as soon as it is back");
+            let diagnostic =
+                Diagnostic::without_span(Code::File, words).hint("it is shown again as soon as it is back");
             return Ok(at_fault(session, &[diagnostic], &Sources::new(), &steps));
+        }
+        Err(Unmade::Manifest(faults)) => {
+            return Ok(at_fault(session, &faults.diagnostics, &faults.sources, &steps));
         }
     };
     let Made { opened, config, compiled, revision } = made;
@@ -136,6 +139,7 @@ pub(super) fn draw(session: &Session, wanted: &Wanted, stop: &Stop, progress: Pr
         drawing,
         scene: scene.clone(),
         svg: svg.filter(|_| is_small).map_or_else(OnceLock::new, |svg| OnceLock::from(Arc::from(svg))),
+        index: OnceLock::new(),
         only: config.only.clone(),
         tiles: compiled.tiles,
     };

@@ -8,9 +8,13 @@ mod command;
 mod diagnostics;
 mod draw;
 mod job;
+mod measure;
 mod pictures;
+mod save;
 mod server;
 mod session;
+mod tiles;
+mod write_back;
 
 use std::io::{self, ErrorKind, Write};
 use std::net::{Ipv4Addr, TcpListener};
@@ -129,9 +133,9 @@ fn settings(arguments: &PreviewArgs) -> Result<Settings, (String, Ended)> {
     }
     let scene = std::path::absolute(&given).map_err(|error| (plain(&error), Ended::Io))?;
     let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from("."));
-    let output = folder.canonicalize().map_err(|error| {
-        (format!("pictures cannot be saved in {}: {}", folder.display(), plain(&error)), Ended::Io)
-    })?;
+    let output = folder
+        .canonicalize()
+        .map_err(|error| (format!("pictures cannot be saved in {}: {}", folder.display(), plain(&error)), Ended::Io))?;
     if !output.is_dir() {
         return Err((format!("pictures cannot be saved in {}: it is no folder", folder.display()), Ended::Io));
     }

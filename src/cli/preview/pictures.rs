@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, OnceLock};
 
+use crate::back::raster::Index;
 use crate::drawing::Drawing;
 use crate::scene::Scene;
 
@@ -20,10 +21,19 @@ pub(super) struct Picture {
     pub(super) scene: Scene,
     /// Its SVG, where it is small enough to be shown so.
     pub(super) svg: OnceLock<Arc<[u8]>>,
+    /// Where its marks lie, once tiles of it were asked for.
+    pub(super) index: OnceLock<Index>,
     /// The paint that was drawn alone.
     pub(super) only: Option<String>,
     /// How many tiles it has.
     pub(super) tiles: u64,
+}
+
+impl Picture {
+    /// Where its marks lie.
+    pub(super) fn index(&self) -> &Index {
+        self.index.get_or_init(|| Index::new(&self.drawing))
+    }
 }
 
 /// Those that are kept.

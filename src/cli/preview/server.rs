@@ -28,8 +28,13 @@ use tokio_stream::wrappers::UnboundedReceiverStream;
 
 use super::assets::{ASSETS, INDEX};
 use super::draw::{Progress, draw, written};
+use super::measure::measure;
 use super::pictures::Picture;
+use super::save::save;
 use super::session::{Session, Wanted};
+use super::tiles;
+use super::write_back::{Refused, Writing, write_back};
+use crate::cli::build::Kind;
 
 /// What the page may load: its own files, and pictures that it makes itself.
 const POLICY: &str = "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; \
@@ -63,6 +68,11 @@ pub(super) fn router(served: Served) -> Router {
         .route("/page/{file}", get(asset))
         .route("/api/draw", post(draw_scene))
         .route("/api/picture/{name}", get(picture))
+        .route("/api/picture/{id}/tile/{z}/{x}/{y}", get(tile))
+        .route("/api/picture/{id}/thumb.png", get(thumb))
+        .route("/api/picture/{id}/metrics", get(metrics))
+        .route("/api/save", post(save_picture))
+        .route("/api/params", post(write_params))
         .route("/api/events", get(events))
         .fallback(async || Failed::new(StatusCode::NOT_FOUND, "there is nothing at this address"))
         .method_not_allowed_fallback(async || {
@@ -200,19 +210,18 @@ async fn draw_scene(State(Served { session, .. }): State<Served>, body: Bytes) -
     drawn.map_err(Failed::fault)?.map(Json).map_err(Failed::bad)
 }
 
-/// Which layers are not shown: `0,3`.
-#[derive(Debug, Deserialize)]
-struct Hidden {
-    #[serde(default)]
-    hide: String,
+/// What stands behind the question mark of an address.
+type Words = Query<Vec<(String, String)>>;
+
+fn word<'a>(words: &'a [(String, String)], name: &str) -> &'a str {
+    words.iter().find(|(known, _)| known == name).map_or("", |(_, value)| value)
 }
 
-impl Hidden {
-    fn layers(&self) -> Result<Vec<usize>, Failed> {
-        let numbers = self.hide.split(',').map(str::trim).filter(|number| !number.is_empty());
-        let parsed: Result<Vec<usize>, _> = numbers.map(str::parse).collect();
-        parsed.map_err(|_| Failed::bad("`hide` lists numbers of layers, as in 0,3"))
-    }
+/// Which layers are not shown: `hide=0,3`.
+fn hidden(words: &[(String, String)]) -> Result<Vec<usize>, Failed> {
+    let numbers = word(words, "hide").split(',').map(str::trim).filter(|number| !number.is_empty());
+    let parsed: Result<Vec<usize>, _> = numbers.map(str::parse).collect();
+    parsed.map_err(|_| Failed::bad("`hide` lists numbers of layers, as in 0,3"))
 }
 
 /// An answer that stays as it is, for names of pictures are never used again.
@@ -224,16 +233,91 @@ fn kept(kind: &'static str, body: impl Into<Body>) -> Response {
 async fn picture(
     State(Served { session, .. }): State<Served>,
     Path(name): Path<String>,
-    Query(hidden): Query<Hidden>,
+    Query(words): Words,
 ) -> Result<Response, Failed> {
     let id = name.strip_suffix(".svg").ok_or_else(|| Failed::new(StatusCode::NOT_FOUND, "pictures end in .svg"))?;
     let picture = session.picture(id).ok_or_else(Failed::unknown)?;
-    let hidden = hidden.layers()?;
+    let hidden = hidden(&words)?;
     let svg = match picture.svg.get() {
         Some(svg) if hidden.is_empty() => Bytes::from_owner(Arc::clone(svg)),
-        _ => session.queue.run(move |_| without(&picture, &hidden)).await.map_err(Failed::fault)?.into(),
+        _ => session.brushes.run(move |_| without(&picture, &hidden)).await.map_err(Failed::fault)?.into(),
     };
     Ok(kept("image/svg+xml", svg))
+}
+
+async fn tile(
+    State(Served { session, .. }): State<Served>,
+    Path((id, z, x, y)): Path<(String, String, String, String)>,
+    Query(words): Words,
+) -> Result<Response, Failed> {
+    let picture = session.picture(&id).ok_or_else(Failed::unknown)?;
+    let hidden = hidden(&words)?;
+    let none = || Failed::new(StatusCode::NOT_FOUND, "the picture has no such tile");
+    let numbers = (z.parse().ok()).zip(x.parse().ok()).zip(y.strip_suffix(".png").and_then(|y| y.parse().ok()));
+    let ((z, x), y) = numbers.ok_or_else(none)?;
+    let drawn = session.brushes.run(move |stop| match stop.is_asked() {
+        true => None,
+        false => tiles::tile(&picture, z, [x, y], &hidden),
+    });
+    let png = drawn.await.map_err(Failed::fault)?.ok_or_else(none)?.map_err(Failed::fault)?;
+    Ok(kept("image/png", png))
+}
+
+async fn thumb(
+    State(Served { session, .. }): State<Served>,
+    Path(id): Path<String>,
+    Query(words): Words,
+) -> Result<Response, Failed> {
+    let picture = session.picture(&id).ok_or_else(Failed::unknown)?;
+    let hidden = hidden(&words)?;
+    let size = match word(&words, "size") {
+        "" => Some(256),
+        size => size.parse().ok(),
+    };
+    let size = size.ok_or_else(|| Failed::bad("`size` is a number of pixels"))?;
+    let png = session.brushes.run(move |_| tiles::thumb(&picture, size, &hidden));
+    Ok(kept("image/png", png.await.map_err(Failed::fault)?.map_err(Failed::fault)?))
+}
+
+async fn metrics(State(Served { session, .. }): State<Served>, Path(id): Path<String>) -> Result<Json<Value>, Failed> {
+    let picture = session.picture(&id).ok_or_else(Failed::unknown)?;
+    let limits = session.settings.limits.clone();
+    let measured = session.queue.run(move |stop| measure(&picture, &limits, stop)).await.map_err(Failed::fault)?;
+    measured.map(Json).map_err(|words| Failed::new(StatusCode::UNPROCESSABLE_ENTITY, words))
+}
+
+/// A picture that is to be saved.
+#[derive(Debug, Deserialize)]
+struct SaveRequest {
+    #[serde(flatten)]
+    wanted: Wanted,
+    kind: String,
+}
+
+async fn save_picture(State(Served { session, .. }): State<Served>, body: Bytes) -> Result<Json<Value>, Failed> {
+    let SaveRequest { wanted, kind } = read(&body)?;
+    let kind = match &*kind {
+        "svg" => Kind::Svg,
+        "png" => Kind::Png,
+        "pdf" => Kind::Pdf,
+        _ => return Err(Failed::bad("pictures are saved as svg, png or pdf")),
+    };
+    let inner = Arc::clone(&session);
+    let saved = session.queue.run(move |stop| save(&inner, &wanted, kind, stop)).await.map_err(Failed::fault)?;
+    let path = saved.map_err(|words| Failed::new(StatusCode::UNPROCESSABLE_ENTITY, words))?;
+    Ok(Json(json!({ "path": path.to_string_lossy() })))
+}
+
+async fn write_params(State(Served { session, .. }): State<Served>, body: Bytes) -> Result<Json<Value>, Failed> {
+    let writing: Writing = read(&body)?;
+    let inner = Arc::clone(&session);
+    let written = session.queue.run(move |stop| write_back(&inner, &writing, stop)).await.map_err(Failed::fault)?;
+    let written = written.map_err(|refused| match refused {
+        Refused::Changed(words) => Failed::new(StatusCode::CONFLICT, words),
+        Refused::Fault(words) => Failed::new(StatusCode::UNPROCESSABLE_ENTITY, words),
+        Refused::Io(words) => Failed::fault(words),
+    })?;
+    Ok(Json(json!({ "written": written })))
 }
 
 /// The SVG of a picture without some of its layers.

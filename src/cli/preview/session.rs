@@ -11,6 +11,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
+use crate::library::MANIFEST;
 use crate::lower::LowerConfig;
 use crate::overlay::Overlay;
 use crate::scene::Limits;
@@ -20,8 +21,9 @@ use crate::{Compiled, Config, Observer, compile};
 use super::job::Queue;
 use super::pictures::{Picture, Pictures};
 use crate::cli::files::{OpenError, Opened, open};
+use crate::cli::packages::Faults;
 use crate::cli::picture::take_over;
-use crate::cli::watch::{Recorded, Stamp, Stamps, Watch};
+use crate::cli::watch::{Stamp, Stamps, Watch};
 
 /// What is drawn: values of parameters, a seed, what is shown on top, and one paint alone.
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -98,7 +100,10 @@ pub(super) struct Session {
     pub(super) token: String,
     /// Tells the pictures of this preview from those that a browser keeps of another.
     pub(super) name: String,
+    /// Compilations.
     pub(super) queue: Queue,
+    /// What is done with drawings that are there: tiles do not wait for compilations.
+    pub(super) brushes: Queue,
     revision: AtomicU64,
     pictures: Mutex<Pictures>,
     last: Mutex<Last>,
@@ -123,6 +128,21 @@ pub(super) enum Unmade {
     Nonsense(String),
     /// The scene cannot be opened.
     NoScene(String),
+    /// The library that the scene lies in is at fault.
+    Manifest(Faults),
+}
+
+impl Unmade {
+    /// What is wrong, in a line.
+    pub(super) fn words(&self) -> String {
+        match self {
+            Self::Nonsense(words) | Self::NoScene(words) => words.clone(),
+            Self::Manifest(faults) => {
+                let first = faults.diagnostics.iter().find(|diagnostic| diagnostic.is_error());
+                first.map_or_else(|| "the library is at fault".to_owned(), |first| first.message.clone())
+            }
+        }
+    }
 }
 
 /// What a lock guards, even where a thread panicked while it held it: no change here is made by halves.
@@ -143,6 +163,7 @@ impl Session {
             token: unguessable("token") + &unguessable("further digits of the token"),
             name: unguessable("name").split_off(10),
             queue: Queue::default(),
+            brushes: Queue::default(),
             revision: AtomicU64::new(1),
             pictures: Mutex::default(),
             last: Mutex::default(),
@@ -157,17 +178,33 @@ impl Session {
             }
         });
         let watch = watch.map_err(|error| format!("cannot watch files: {}", crate::cli::files::plain(&error)))?;
-        let scene = session.settings.scene.clone();
-        watch.follow(Stamps::from([(scene.clone(), Stamp::of(&scene))]));
         // Nothing was there before.
         let _ = session.watch.set(watch);
+        session.follow_scene();
         Ok(session)
+    }
+
+    /// Follows files from now on.
+    fn follow(&self, stamps: Stamps) {
+        if let Some(watch) = self.watch.get() {
+            watch.follow(stamps);
+        }
+    }
+
+    /// Follows the scene's own file, and what would be the manifest of its library.
+    fn follow_scene(&self) {
+        let scene = &self.settings.scene;
+        let manifests = scene.ancestors().skip(1).map(|folder| folder.join(MANIFEST)).filter(|path| path.is_file());
+        let files = manifests.chain([scene.clone()]);
+        self.follow(files.map(|path| (path.clone(), Stamp::of(&path))).collect());
     }
 
     /// Files changed: tells the page.
     fn changed(&self, files: &[PathBuf]) {
         let revision = self.revision.fetch_add(1, Ordering::SeqCst) + 1;
-        let names: Vec<String> = files.iter().map(|file| self.shown(file)).collect();
+        let mut names: Vec<String> = files.iter().map(|file| self.shown(file)).collect();
+        // A file may be known by two names that links give it.
+        names.dedup();
         self.tell("changed", &json!({ "revision": revision, "files": names }));
     }
 
@@ -220,17 +257,24 @@ impl Session {
         self.pictures().get(number)
     }
 
+    /// Opens the scene as it is now.
+    pub(super) fn open(&self) -> Result<Opened, Unmade> {
+        open(&self.settings.scene, self.settings.root.as_deref()).map_err(|error| {
+            self.follow_scene();
+            match error {
+                OpenError::Words(words, _) => Unmade::NoScene(words),
+                OpenError::NoScene(path) => Unmade::NoScene(format!("{path} holds no scene")),
+                OpenError::Manifest(faults) => Unmade::Manifest(faults),
+            }
+        })
+    }
+
     /// Compiles the scene as it is wanted. What it reads is followed from then on.
     pub(super) fn make(&self, wanted: &Wanted, stop: &Stop, observer: &mut dyn Observer) -> Result<Made, Unmade> {
         let overlay = |name: &String| Overlay::from_name(name).ok_or_else(|| format!("there is no overlay `{name}`"));
         let overlays = wanted.overlays.iter().map(overlay).collect::<Result<Vec<_>, _>>().map_err(Unmade::Nonsense)?;
         let revision = self.revision();
-        let opened = open(&self.settings.scene, self.settings.root.as_deref()).map_err(|error| {
-            Unmade::NoScene(match error {
-                OpenError::Words(words, _) => words,
-                OpenError::NoScene(path) => format!("{path} holds no scene"),
-            })
-        })?;
+        let opened = self.open()?;
         let given = self.settings.sets.iter().filter(|(name, _)| !wanted.sets.contains_key(name)).cloned();
         let sets = given.chain(wanted.sets.iter().map(|(name, value)| (name.clone(), value.clone()))).collect();
         let seed = wanted.seed.map(|seed| seed.0).or(self.settings.seed);
@@ -238,11 +282,8 @@ impl Session {
         let lower = LowerConfig { sets, seed, dpi: None, limits };
         let mut config = Config { lower, only: wanted.only.clone(), overlays };
         take_over(&mut config, &opened);
-        let loader = Recorded::new(&opened.loader);
-        let compiled = compile(&opened.path, &loader, &config, observer);
-        if let Some(watch) = self.watch.get() {
-            watch.follow(loader.stamps());
-        }
+        let compiled = compile(&opened.path, &opened.loader, &config, observer);
+        self.follow(opened.loader.followed());
         Ok(Made { opened, config, compiled, revision })
     }
 }
