@@ -42,9 +42,10 @@ export function isTyping(target) {
   return target instanceof HTMLInputElement && !["range", "checkbox", "radio", "color", "button"].includes(target.type);
 }
 
-/** A number for people: at most `digits` digits, thousands parted. */
+/** A number for people: so many digits, thousands parted. */
 export function figure(value, digits = 3) {
-  return new Intl.NumberFormat("en-GB", { maximumSignificantDigits: digits }).format(value);
+  const least = Number.isInteger(value) ? 1 : digits;
+  return new Intl.NumberFormat("en-GB", { minimumSignificantDigits: least, maximumSignificantDigits: digits }).format(value);
 }
 
 /** A whole number for people. */

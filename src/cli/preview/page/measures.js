@@ -157,10 +157,10 @@ export class Measures {
   }
 }
 
-/** What has changed, with its sign; nothing where nothing has. */
+/** What has changed, with its sign; nothing where nothing has that the figures would show. */
 function difference(after, before) {
   if (typeof before !== "number") return "";
   const change = after - before;
-  if (Math.abs(change) <= 1e-9 * Math.max(1, Math.abs(before))) return "";
+  if (Math.abs(change) < 0.0005 * Math.max(0.1, Math.abs(before))) return "";
   return `${change > 0 ? "+" : "−"}${figure(Math.abs(change), 2)}`;
 }

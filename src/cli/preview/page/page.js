@@ -284,12 +284,17 @@ const rollSeed = () => wish.change({ seed: Math.floor(Math.random() * 100_000) }
 const resetAll = () => wish.change({ sets: {} });
 
 async function save(kind) {
+  const button = document.querySelector(`[data-save="${kind}"]`);
+  if (button.ariaBusy === "true") return;
+  button.ariaBusy = "true";
   try {
     const { path } = await api.save(wish.now, kind);
     const hidden = wish.now.hidden.length > 0 ? " (with the hidden layers)" : "";
     toast(`Saved ${path}${hidden}`);
   } catch (error) {
     toast(`Not saved: ${error.message}`, "error");
+  } finally {
+    button.ariaBusy = "false";
   }
 }
 
