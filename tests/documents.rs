@@ -26,6 +26,7 @@ const DOCUMENTS: [&str; 10] = [
     "docs/libraries.md",
     "docs/metrics.md",
     "docs/paper.md",
+    "docs/preview.md",
     "docs/statistics.md",
 ];
 

@@ -4,6 +4,7 @@
 mod angles;
 mod arrows;
 mod bad_input;
+mod browser;
 mod cases;
 mod cli;
 mod codes;
@@ -20,6 +21,7 @@ mod library;
 mod lsp;
 mod metrics;
 mod paper;
+mod preview;
 mod preview_server;
 mod repeat;
 mod statistics;

@@ -46,7 +46,7 @@ impl FsLoader {
     /// Of a root folder, in which files that are held stand in for those on disk.
     pub(super) fn at(root: PathBuf, held: BTreeMap<String, Arc<[u8]>>) -> Result<Self, Faults> {
         let packages = Packages::find(&root)?;
-        Ok(Self { root, held, packages, aliases: BTreeMap::new() })
+        Ok(Self { held, ..Self::new(root, packages) })
     }
 
     /// Where the file of a name lies, as texts are called in `Sources`; none for what lies in no file: standard input,
@@ -93,6 +93,9 @@ impl FsLoader {
                 let stamp = Stamp::of(&path);
                 stamps.entry(path).or_insert(stamp);
             }
+        }
+        if let Some((_, bundle)) = &self.bundle {
+            stamps.entry(bundle.clone()).or_insert_with(|| Stamp::of(bundle));
         }
         stamps
     }
@@ -272,11 +275,7 @@ pub(super) fn picture(bytes: &[u8], root: &Path, name: String) -> Result<Opened,
     let path = picture.scene.clone();
     // What is wrong with a library that the picture happens to lie in does not matter to what it holds.
     let packages = Packages::find(root).unwrap_or_else(|_| Packages::alone(root));
-    let loader = FsLoader {
-        held,
-        aliases: picture.dependencies.clone(),
-        ..FsLoader::new(root.to_owned(), packages)
-    };
+    let loader = FsLoader { held, aliases: picture.dependencies.clone(), ..FsLoader::new(root.to_owned(), packages) };
     Ok(Opened { loader, path, picture: Some(picture) })
 }
 

@@ -192,7 +192,7 @@ impl Side {
             }
         }
         let mut watch = Watch::default();
-        let Compiled { drawing, lowered } = compile(path, loader, &config, &mut watch);
+        let Compiled { drawing, lowered, .. } = compile(path, loader, &config, &mut watch);
         let stood = match &self.source {
             Source::Git(loader, _) => loader.found().map(str::to_owned),
             Source::Opened(_) | Source::Nothing => None,
