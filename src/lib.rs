@@ -24,6 +24,7 @@
 //! terminal, no clock and, but for a [`loader::Loader`], no file.
 
 pub mod back;
+pub mod bundle;
 pub mod chart;
 #[doc(hidden)]
 pub mod cli;
@@ -32,21 +33,25 @@ pub mod diag;
 pub mod drawing;
 pub mod experiment;
 pub mod field;
+pub mod gallery;
 pub mod geom;
 pub mod illustrate;
 pub mod library;
 pub mod loader;
 pub mod lower;
+pub mod lsp;
 pub mod metrics;
 pub mod overlay;
 pub mod pass;
 pub mod random;
 pub mod region;
 pub mod scene;
+pub mod sheet;
 pub mod span;
 pub mod stage;
 pub mod stats;
 pub mod stop;
+pub mod swatch;
 pub mod syntax;
 pub mod wedge;
 
@@ -112,6 +117,9 @@ impl Step {
 pub trait Observer {
     /// A step begins, for the paint of this name (empty for the whole scene).
     fn begin(&mut self, step: Step, paint: &str);
+
+    /// The tiles of a paint are found, and are drawn next.
+    fn found(&mut self, _paint: &Paint, _stages: &PaintStages) {}
 }
 
 /// Nobody watches.
@@ -124,6 +132,8 @@ impl Observer for () {
 pub struct Compiled {
     /// The picture, unless there are errors.
     pub drawing: Option<Drawing>,
+    /// How many tiles its paints have, those that are not drawn included.
+    pub tiles: u64,
     /// The scene with every diagnostic, the passes' included, every text and every file that was read.
     pub lowered: Lowered,
 }
@@ -136,23 +146,25 @@ pub struct Compiled {
 pub fn compile(path: &str, loader: &dyn Loader, config: &Config, observer: &mut dyn Observer) -> Compiled {
     observer.begin(Step::Lower, "");
     let mut lowered = lower::lower(path, loader, &config.lower);
-    let Some(scene) = &lowered.scene else { return Compiled { drawing: None, lowered } };
+    let Some(scene) = &lowered.scene else { return Compiled { drawing: None, tiles: 0, lowered } };
     let mut diagnostics = Vec::new();
     // What concerns the whole scene is said at its first character.
     let start = lowered.sources.iter().next().map(|(source, _)| Span::new(source, 0, 0));
-    let drawing = draw(scene, start, config, observer, &mut diagnostics);
+    let mut tiles = 0;
+    let drawing = draw(scene, start, config, observer, &mut diagnostics, &mut tiles);
     lowered.diagnostics.extend(diagnostics);
     diag::sort(&mut lowered.diagnostics);
-    Compiled { drawing, lowered }
+    Compiled { drawing, tiles, lowered }
 }
 
-/// Draws a scene. Limits that are met and warnings go to `diagnostics`.
+/// Draws a scene. Limits that are met and warnings go to `diagnostics`; what tiles there are is added to `tiles`.
 fn draw(
     scene: &Scene,
     start: Option<Span>,
     config: &Config,
     observer: &mut dyn Observer,
     diagnostics: &mut Vec<Diagnostic>,
+    tiles: &mut u64,
 ) -> Option<Drawing> {
     let (canvas, limits) = (&scene.canvas, &config.lower.limits);
     let mut items = items(scene);
@@ -183,7 +195,9 @@ fn draw(
             Item::Outline(outline) => assembly.outline(outline, setting).map(|()| None),
             Item::Ink(ink) => assembly.ink(ink, setting).map(|()| None),
             Item::Paint(paint) => PaintStages::new(paint, canvas, limits, observer, diagnostics).and_then(|stages| {
+                observer.found(paint, &stages);
                 observer.begin(Step::Draw, &paint.name);
+                *tiles += stages.tiles.len() as u64;
                 if !config.overlays.is_empty() {
                     patterns.push(Pattern::new(paint, canvas, &stages.borrow()));
                     last = Some(paint.span);

@@ -4,23 +4,22 @@
 //! passes reckon that it prints and what a rendering of it holds. A wedge is a scene of its own, which imports the other
 //! one; whatever the tone's parameters are called, its `k` or `darkness` is replaced by the steps.
 
-use std::sync::Arc;
-
 use crate::PaintStages;
 use crate::back::raster::{Pixels, render};
 use crate::diag::{Code, Diagnostic, did_you_mean};
 use crate::drawing::{Drawing, Page};
 use crate::field::Field;
-use crate::geom::{Point, Rect};
-use crate::loader::{LoadError, Loader, UnknownDependency};
+use crate::geom::{Length, Point, Rect};
+use crate::loader::Loader;
 use crate::lower::{LowerConfig, Lowered, lower};
+use crate::pass::cut;
 use crate::pass::draw::{Assembly, Setting};
-use crate::pass::{cut, place};
 use crate::region::Region;
-use crate::scene::{Asked, Blend, Canvas, Colour, Darkness, Depth, Paint, Range, Scene};
+use crate::scene::{Asked, Blend, Canvas, Colour, Darkness, Depth, Paint, Range};
 use crate::span::{Sources, Syntax};
+use crate::swatch::{Colours, Swatch, first_paint, imports, read, statements};
 use crate::syntax::ast::{Document, Expr, ExprKind, Parameter, StatementKind};
-use crate::syntax::{self, kake};
+use crate::syntax::kake;
 
 /// Sides of a patch, in spacings of the tone's tiles.
 const TILES: f64 = 10.0;
@@ -30,9 +29,6 @@ const MARGIN: f64 = 1.0;
 
 /// Patches in a row.
 const COLUMNS: u32 = 8;
-
-/// The side of the canvas on which spacings are looked up, in millimetres.
-const TRIAL: f64 = 100.0;
 
 /// The greatest k.
 const MOST_LAYERS: f64 = 4.0;
@@ -119,24 +115,31 @@ pub fn wedge(path: &str, loader: &dyn Loader, tone: Option<&str>, config: &Wedge
     let lowered = lower(path, loader, &config.lower);
     let Some(scene) = &lowered.scene else { return Drawn::fault(lowered) };
     let canvas = scene.canvas.clone();
-    let document = document(path, &lowered.sources);
+    let document = read(path, &lowered.sources);
     let tone = match named(document.as_ref(), tone) {
         Ok(tone) => tone,
         Err(diagnostic) => return Drawn::refuse(diagnostic, lowered.sources),
     };
-    let (imports, completed) = (imports(path, document.as_ref()), completed(document.as_ref(), &tone));
-    let sheet = Sheet { path, loader, config, imports: &imports, tone: &completed, canvas: &canvas };
+    let completed = completed(document.as_ref(), &tone);
+    let swatch = Swatch {
+        name: "wedge",
+        path,
+        loader,
+        config: &config.lower,
+        imports: imports(path, document.as_ref()),
+        canvas: &canvas,
+        colours: Colours::Plain,
+    };
     // The size of patches follows from the distance of tiles, which only the tone knows.
-    let trial = sheet.lower([TRIAL; 2]);
-    let Some((paint, trial_canvas)) = first_paint(trial.scene.as_ref()) else { return Drawn::fault(trial) };
-    let spacing = match place::place(paint, trial_canvas, &config.lower.limits) {
-        Ok(sites) => sites.spacing,
-        Err(diagnostic) => return Drawn::refuse(diagnostic, trial.sources),
+    let spacing = match swatch.tiles(&completed) {
+        Ok(tiles) => tiles.spacing.to_mm(),
+        Err(lowered) => return Drawn::fault(*lowered),
     };
     let side = TILES * spacing;
     let columns = config.steps.clamp(1, COLUMNS);
     let rows = config.steps.div_ceil(columns);
-    let whole = sheet.lower([side * f64::from(columns), side * f64::from(rows)]);
+    let size = [f64::from(columns), f64::from(rows)].map(|count| Length::mm(count * side));
+    let whole = swatch.lower(&completed, size);
     let Some((paint, page)) = first_paint(whole.scene.as_ref()) else { return Drawn::fault(whole) };
     if let Some(diagnostic) = too_large(page, config) {
         return Drawn::refuse(diagnostic, whole.sources);
@@ -151,54 +154,12 @@ pub fn wedge(path: &str, loader: &dyn Loader, tone: Option<&str>, config: &Wedge
     }
 }
 
-/// The document of the scene, which lowering has read.
-fn document(path: &str, sources: &Sources) -> Option<Document> {
-    let (source, read) = sources.iter().find(|(_, source)| source.name == path)?;
-    let (document, _) = match read.syntax {
-        Syntax::Kake => kake::parse(source, &read.text),
-        Syntax::Toml => syntax::toml::read(source, &read.text),
-    };
-    Some(document)
-}
-
 /// Every tone of a document with its parameters.
 fn tones(document: Option<&Document>) -> impl Iterator<Item = (&str, &[Parameter])> {
     statements(document).filter_map(|kind| match kind {
         StatementKind::Tone { name, params, .. } => Some((name.name.as_str(), &params[..])),
         _ => None,
     })
-}
-
-/// Every statement at the top level of a document.
-fn statements(document: Option<&Document>) -> impl Iterator<Item = &StatementKind> {
-    document.into_iter().flat_map(|document| &document.statements).map(|statement| &statement.kind)
-}
-
-/// Statements that import the scene, and what it imports itself under the names that it uses.
-fn imports(path: &str, document: Option<&Document>) -> String {
-    let file = path.rsplit_once('/').map_or(path, |(_, file)| file);
-    let mut text = format!("import {}\n", quoted(file));
-    for kind in statements(document) {
-        if let StatementKind::Import { path, alias } = kind {
-            text += &format!("import {}", quoted(&path.value));
-            text += &alias.as_ref().map_or_else(String::new, |alias| format!(" as {}", alias.name));
-            text.push('\n');
-        }
-    }
-    text
-}
-
-/// A string of the language.
-fn quoted(text: &str) -> String {
-    let mut quoted = String::from("\"");
-    for character in text.chars() {
-        if matches!(character, '\\' | '"' | '{' | '}') {
-            quoted.push('\\');
-        }
-        quoted.push(character);
-    }
-    quoted.push('"');
-    quoted
 }
 
 /// The tone that is meant.
@@ -260,65 +221,6 @@ fn completed(document: Option<&Document>, tone: &str) -> String {
         }
         None => format!("{tone}({})", lacking.join(", ")),
     }
-}
-
-/// A scene that paints its canvas with a tone of another scene.
-struct Sheet<'a> {
-    /// Where the other scene lies.
-    path: &'a str,
-    loader: &'a dyn Loader,
-    config: &'a WedgeConfig,
-    /// The statements that import it.
-    imports: &'a str,
-    tone: &'a str,
-    /// The other scene's canvas, from which all but the size is taken.
-    canvas: &'a Canvas,
-}
-
-/// Files with one more, which exists nowhere else.
-struct With<'a> {
-    loader: &'a dyn Loader,
-    path: String,
-    text: Arc<[u8]>,
-}
-
-impl Loader for With<'_> {
-    fn load(&self, path: &str) -> Result<Arc<[u8]>, LoadError> {
-        if path == self.path { Ok(Arc::clone(&self.text)) } else { self.loader.load(path) }
-    }
-
-    fn library(&self, name: &str) -> Option<Arc<[u8]>> {
-        self.loader.library(name)
-    }
-
-    fn dependency(&self, of: &str, name: &str) -> Result<String, UnknownDependency> {
-        self.loader.dependency(of, name)
-    }
-}
-
-impl Sheet<'_> {
-    /// Lowers it at a size in millimetres.
-    fn lower(&self, [width, height]: [f64; 2]) -> Lowered {
-        let (folder, file) = self.path.rsplit_once('/').map_or(("", self.path), |(folder, file)| (folder, file));
-        let Canvas { dpi, unit, gain, .. } = self.canvas;
-        let (unit, gain) = (unit.to_mm(), gain.to_mm());
-        let text = format!(
-            "{}canvas {{ size: ({width:.6}mm, {height:.6}mm) dpi: {dpi} unit: {unit}mm gain: {gain}mm }}\n\
-             paint canvas with {} as \"wedge\"\n",
-            self.imports, self.tone,
-        );
-        // Should there be such a file, it is not the one that is imported.
-        let name = format!("wedge of {file}.kake");
-        let path = if folder.is_empty() { name } else { format!("{folder}/{name}") };
-        let with = With { loader: self.loader, path: path.clone(), text: text.into_bytes().into() };
-        lower(&path, &with, &self.config.lower)
-    }
-}
-
-/// The one paint of a sheet, with its canvas.
-fn first_paint(scene: Option<&Scene>) -> Option<(&Paint, &Canvas)> {
-    let scene = scene?;
-    crate::paints(scene).next().map(|paint| (paint, &scene.canvas))
 }
 
 /// A wedge of too many pixels to be rendered.

@@ -15,8 +15,9 @@ use kakeami::lower::LowerConfig;
 use kakeami::{Config, compile};
 
 /// The documents with scenes in them.
-const DOCUMENTS: [&str; 10] = [
+const DOCUMENTS: [&str; 12] = [
     "README.md",
+    "docs/editors.md",
     "docs/language.md",
     "docs/gallery.md",
     "docs/angles.md",
@@ -25,6 +26,7 @@ const DOCUMENTS: [&str; 10] = [
     "docs/libraries.md",
     "docs/metrics.md",
     "docs/paper.md",
+    "docs/preview.md",
     "docs/statistics.md",
 ];
 
@@ -156,7 +158,7 @@ fn targets(document: &str) -> Vec<String> {
 
 #[test]
 fn what_documents_point_to_is_there() {
-    let others = ["CHANGELOG.md", "docs/decisions.md", "examples/data/SOURCES.md"];
+    let others = ["CHANGELOG.md", "docs/decisions.md", "editors/README.md", "examples/data/SOURCES.md"];
     let documents = DOCUMENTS.into_iter().chain(others);
     for document in documents {
         let path = repository().join(document);

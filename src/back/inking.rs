@@ -64,6 +64,11 @@ enum Mode {
 impl Inking {
     /// Sees what inks there are.
     pub(super) fn new(drawing: &Drawing) -> Self {
+        Self::with_depth(drawing, drawing.page.depth)
+    }
+
+    /// The same with other levels than the page has.
+    pub(super) fn with_depth(drawing: &Drawing, depth: Depth) -> Self {
         let mut inks: Vec<Colour> = Vec::new();
         let mut group_of = Vec::with_capacity(drawing.layers.len());
         for layer in &drawing.layers {
@@ -75,7 +80,6 @@ impl Inking {
             group_of.push(inks.len() - 1);
         }
         let paper = drawing.page.paper.unwrap_or(Colour { r: 0, g: 0, b: 0, a: 0 });
-        let depth = drawing.page.depth;
         let indexed = match depth {
             Depth::One => index_colours(paper, &inks),
             Depth::Eight => None,

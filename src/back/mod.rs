@@ -3,6 +3,7 @@
 //! They decide nothing about the picture: marks are already cut, placed and inked. The same drawing gives the same
 //! bytes whatever the number of threads, the locale and the time; SVG text is the same on every machine.
 
+pub mod contact;
 mod inking;
 pub mod json;
 pub mod metadata;

@@ -38,6 +38,11 @@ impl Scale {
         Self { x: f64::from(pixels[0]) / width.to_mm(), y: f64::from(pixels[1]) / height.to_mm() }
     }
 
+    /// The same across and down, in pixels a millimetre.
+    pub(super) fn even(per_mm: f64) -> Self {
+        Self { x: per_mm, y: per_mm }
+    }
+
     /// How far lines may stray from a curve.
     fn flattening(self) -> Length {
         Length::mm(FLATTENING / self.x.max(self.y))
@@ -64,7 +69,7 @@ pub(super) struct Tile {
 impl Tile {
     /// What of the page a mark must touch to be seen in the tile, for a mark that reaches `margin` millimetres beyond its
     /// points.
-    fn reach(&self, margin: f64) -> Rect {
+    pub(super) fn reach(&self, margin: f64) -> Rect {
         let [left, top] = self.origin.map(|n| n as f64);
         let [width, height] = self.size.map(|n| n as f64);
         let corner = |x: f64, y: f64| Point::new(x / self.scale.x, y / self.scale.y);

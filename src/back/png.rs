@@ -15,7 +15,7 @@ use ::png::{
 
 use super::metadata::{KEYWORD, Metadata};
 use super::raster::{Format, Pixels, render};
-use crate::drawing::Drawing;
+use crate::drawing::{Drawing, Page};
 use crate::geom::Length;
 use crate::scene::Colour;
 
@@ -71,11 +71,21 @@ const SMALL: u64 = 16 << 20;
 /// # Errors
 /// What `out` answers, and sizes that the format does not know.
 pub fn write(drawing: &Drawing, metadata: Option<&Metadata>, out: &mut dyn Write) -> Result<(), PngError> {
-    // Pixels per metre; the format has no other unit.
-    let per_metre = (drawing.page.dpi * (1000.0 / Length::MM_PER_INCH)).round() as u32;
-    let resolution = PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter };
     let text = metadata.map(Metadata::to_json).transpose()?;
-    write_pixels(&render(drawing), drawing.page.pixels, Some(resolution), text, out)
+    write_page(&render(drawing), &drawing.page, text, out)
+}
+
+/// Writes the pixels of a page, and the metadata's text where there is one.
+pub(super) fn write_page(
+    pixels: &Pixels,
+    page: &Page,
+    text: Option<String>,
+    out: &mut dyn Write,
+) -> Result<(), PngError> {
+    // Pixels per metre; the format has no other unit.
+    let per_metre = (page.dpi * (1000.0 / Length::MM_PER_INCH)).round() as u32;
+    let resolution = PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter };
+    write_pixels(pixels, page.pixels, Some(resolution), text, out)
 }
 
 /// The bytes of a PNG of these pixels, without a resolution and without metadata.

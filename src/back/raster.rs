@@ -6,6 +6,8 @@
 //! what the scan converter resolves, so that neighbouring tiles agree about a mark that both of them hold. Bands of
 //! tiles are drawn by several threads; what they draw does not depend on how many there are.
 
+mod window;
+
 use rayon::prelude::*;
 use tiny_skia::{Mask, PathBuilder, Transform};
 
@@ -14,6 +16,7 @@ use super::inking::Inking;
 use super::outline::{Marks, Outliner, Scale, Tile};
 use crate::drawing::{Curves, Drawing, Layer};
 use crate::scene::Colour;
+pub use window::{Index, Window, fitting, render as render_window};
 
 /// Width of a tile in pixels; the scan converter works on up to 8191.
 const TILE_WIDTH: usize = 2_048;

@@ -7,7 +7,7 @@
 
 use std::io::{self, Write};
 
-use svg::node::Text;
+use svg::node::Text as Characters;
 use svg::node::element::{self, Element, Pattern, Rectangle, SVG};
 
 use super::metadata::{ELEMENT, Metadata, NAMESPACE};
@@ -18,6 +18,7 @@ use super::taper::outline;
 use crate::drawing::{Drawing, Layer};
 use crate::geom::{Length, ring_area};
 use crate::scene::{Cap, Colour};
+use crate::sheet::{Anchor, Sheet, Text};
 
 /// Writes an SVG.
 ///
@@ -25,10 +26,62 @@ use crate::scene::{Cap, Colour};
 /// What `out` answers.
 pub fn write(drawing: &Drawing, metadata: Option<&Metadata>, out: &mut dyn Write) -> io::Result<()> {
     write_head(drawing, 1.0, metadata, out)?;
-    write_page(drawing, out)?;
+    write_page(drawing, "", out)?;
     out.write_all(b"</svg>\n")?;
     out.flush()
 }
+
+/// Writes a contact sheet with its pictures, one for each place: those that are missing stay white. What is written on it
+/// is text.
+///
+/// # Errors
+/// What `out` answers.
+pub fn write_sheet(sheet: &Sheet, pictures: &[Option<Drawing>], out: &mut dyn Write) -> io::Result<()> {
+    let page = Drawing { page: sheet.page.clone(), layers: vec![sheet.frame_layer()] };
+    write_head(&page, 1.0, None, out)?;
+    write_paper(&page, "", out)?;
+    for (i, (place, picture)) in sheet.places.iter().zip(pictures).enumerate() {
+        let Some(picture) = picture else { continue };
+        let ([width, height], area) = ([picture.page.width, picture.page.height].map(Length::to_mm), &place.area);
+        // A picture within another shows no more than its own page.
+        let inner = SVG::new()
+            .set("x", number::text(area.min.x))
+            .set("y", number::text(area.min.y))
+            .set("width", number::text(area.width()))
+            .set("height", number::text(area.height()))
+            .set("viewBox", format!("0 0 {} {}", number::text(width), number::text(height)));
+        writeln!(out, "{}", open_tag(&inner).replace(SVG_NAMESPACE, ""))?;
+        writeln!(out, "{}", element::Title::new(xml_text(&place.name)))?;
+        write_page(picture, &format!("p{}-", i + 1), out)?;
+        out.write_all(b"</svg>\n")?;
+    }
+    for layer in &page.layers {
+        write_layer(layer, 1, out)?;
+    }
+    let fonts = element::Group::new().set("font-family", FONTS);
+    writeln!(out, "{}", open_tag(&fonts))?;
+    for Text { text, at, anchor, size, ink } in &sheet.texts {
+        let mut line = element::Text::new(xml_text(text))
+            .set("x", number::text(at.x))
+            .set("y", number::text(at.y))
+            .set("font-size", number::text(size.to_mm()))
+            .set("fill", ink.hex());
+        match anchor {
+            Anchor::Start => {}
+            Anchor::Middle => line = line.set("text-anchor", "middle"),
+        }
+        writeln!(out, "{line}")?;
+    }
+    close(1, out)?;
+    out.write_all(b"</svg>\n")?;
+    out.flush()
+}
+
+/// The name space that every root element is given, and needs only once in a file.
+const SVG_NAMESPACE: &str = " xmlns=\"http://www.w3.org/2000/svg\"";
+
+/// The fonts that captions ask for.
+const FONTS: &str = "Ubuntu, Helvetica, Arial, 'Noto Sans', 'Noto Sans CJK JP', sans-serif";
 
 /// How often a swatch shows its pattern each way.
 const SHOWN: f64 = 2.0;
@@ -48,7 +101,7 @@ pub fn write_pattern(drawing: &Drawing, id: &str, metadata: Option<&Metadata>, o
         .set("width", number::text(page.width.to_mm()))
         .set("height", number::text(page.height.to_mm()));
     writeln!(out, "<defs>\n{}", open_tag(&pattern))?;
-    write_page(drawing, out)?;
+    write_page(drawing, "", out)?;
     out.write_all(b"</pattern>\n</defs>\n")?;
     let shown = Rectangle::new()
         .set("width", number::text(page.width.to_mm() * SHOWN))
@@ -64,13 +117,13 @@ fn pattern_id(name: &str) -> String {
     if plain.starts_with(|c: char| c.is_ascii_alphabetic()) { plain } else { format!("kakeami-{plain}") }
 }
 
-/// The paper and all layers.
-fn write_page(drawing: &Drawing, out: &mut dyn Write) -> io::Result<()> {
-    write_paper(drawing, out)?;
+/// The paper and all layers; their ids begin with `ids`.
+fn write_page(drawing: &Drawing, ids: &str, out: &mut dyn Write) -> io::Result<()> {
+    write_paper(drawing, ids, out)?;
     let together = pieces::together(drawing);
     // The groups that are open, outermost first, and whether each is a paint's: a group may have the same name.
     let mut open: Vec<(&str, bool)> = Vec::new();
-    let mut ids = 0;
+    let mut named = 0;
     for layer in drawing.layers.iter().filter(|layer| layer.marks() > 0) {
         let groups = layer.groups.iter().map(|name| (name.as_str(), false));
         let names: Vec<(&str, bool)> = groups.chain([(layer.name.as_str(), true)]).collect();
@@ -78,11 +131,11 @@ fn write_page(drawing: &Drawing, out: &mut dyn Write) -> io::Result<()> {
         close(open.len() - shared, out)?;
         open.truncate(shared);
         for &(name, paint) in &names[shared..] {
-            ids += 1;
+            named += 1;
             let group = element::Group::new()
                 .set("inkscape:groupmode", "layer")
                 .set("inkscape:label", xml_text(name))
-                .set("id", format!("layer{ids}"));
+                .set("id", format!("{ids}layer{named}"));
             writeln!(out, "{}", open_tag(&group))?;
             open.push((name, paint));
         }
@@ -111,18 +164,21 @@ fn write_head(drawing: &Drawing, shown: f64, metadata: Option<&Metadata>, out: &
         let name = format!("kakeami:{ELEMENT}");
         let mut picture = Element::new(name);
         svg::Node::assign(&mut picture, "xmlns:kakeami", NAMESPACE);
-        svg::Node::append(&mut picture, Text::new(metadata.to_json()?));
+        svg::Node::append(&mut picture, Characters::new(metadata.to_json()?));
         writeln!(out, "<metadata>{picture}</metadata>")?;
     }
     Ok(())
 }
 
-fn write_paper(drawing: &Drawing, out: &mut dyn Write) -> io::Result<()> {
+fn write_paper(drawing: &Drawing, ids: &str, out: &mut dyn Write) -> io::Result<()> {
     let page = &drawing.page;
     if let Some(paper) = page.paper {
         let (width, height) = (number::text(page.width.to_mm()), number::text(page.height.to_mm()));
-        let mut rect =
-            Rectangle::new().set("id", "paper").set("width", width).set("height", height).set("fill", paper.hex());
+        let mut rect = Rectangle::new()
+            .set("id", format!("{ids}paper"))
+            .set("width", width)
+            .set("height", height)
+            .set("fill", paper.hex());
         if paper.a < 255 {
             rect = rect.set("fill-opacity", opacity(paper));
         }

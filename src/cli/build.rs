@@ -1,39 +1,50 @@
 //! `kake build`: a scene to pictures.
 
-use std::io::{self, Write};
+mod batch;
+mod job;
+mod output;
+mod vary;
+mod watching;
+
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-use crate::back::metadata::Metadata;
-use crate::back::plot::plot;
-use crate::back::{json, pdf, png, svg};
-use crate::diag::{Code, Diagnostic};
-use crate::drawing::Drawing;
 use crate::overlay::Overlay;
-use crate::scene::Limits;
-use crate::{Compiled, Config, compile};
 
-use super::files::{Opened, Pending, open, plain, print, write_beside};
-use super::picture::{Embed, Form, NO_OVERLAY, is_plot, metadata, overlays, set_plot, take_over};
+use super::files::{Opened, open};
+use super::picture::{Embed, Form, NO_OVERLAY};
 use super::progress::Progress;
 use super::{Ended, SceneArgs, report};
+
+use job::Job;
+pub(super) use job::check_pixels;
+pub(super) use output::{Kind, cannot_write, fill, kind_of, safe, write};
+use output::{expanded, same_file};
+pub(super) use vary::{Vary, parse as parse_vary};
 
 #[derive(Debug, Args)]
 pub(super) struct BuildArgs {
     #[command(flatten)]
     scene: SceneArgs,
     /// Where to: FILE.svg, FILE.png, FILE.pdf or FILE.json, or - for SVG on standard output; several times for several files.
-    /// By default the scene's name with .svg, in this folder
+    /// By default the scene's name with .svg, in this folder, unless there is a sheet
     #[arg(short, long, value_name = "FILE")]
     output: Vec<PathBuf>,
     /// Replace the scene's seed
     #[arg(long, value_name = "N", conflicts_with = "seeds")]
     seed: Option<u64>,
-    /// Build once for each seed from A to B; outputs hold {seed} in their names
+    /// Build once for each seed from A to B, on all cores; outputs hold {seed} in their names
     #[arg(long, value_name = "A..B", value_parser = parse_seeds)]
     seeds: Option<Seeds>,
+    /// Build once for each of these values of a parameter, with commas between them; several times for every combination.
+    /// Outputs hold {NAME}, or {n} for the picture's number, in their names
+    #[arg(long, value_name = "NAME=V1,V2,…", value_parser = parse_vary)]
+    vary: Vec<Vary>,
+    /// Put all pictures on one sheet with captions: FILE.svg, FILE.png or FILE.pdf
+    #[arg(long, value_name = "FILE")]
+    sheet: Option<PathBuf>,
     /// Replace the canvas's resolution, in pixels per inch
     #[arg(long, value_name = "N", value_parser = parse_dpi)]
     dpi: Option<f64>,
@@ -60,6 +71,9 @@ pub(super) struct BuildArgs {
     /// Say how long each step took
     #[arg(long)]
     timings: bool,
+    /// Build again whenever the scene, an import or an image is saved, until Ctrl-C
+    #[arg(long)]
+    watch: bool,
 }
 
 /// First and last seed.
@@ -85,82 +99,80 @@ fn overlay_names() -> PossibleValuesParser {
     PossibleValuesParser::new(Overlay::ALL.map(Overlay::name).into_iter().chain([NO_OVERLAY]))
 }
 
-/// The kinds of output.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    Svg,
-    Png,
-    Pdf,
-    Json,
-}
-
-pub(super) fn kind_of(output: &Path) -> Result<Kind, String> {
-    if output == Path::new("-") {
-        return Ok(Kind::Svg);
-    }
-    let extension = output.extension().unwrap_or_default().to_ascii_lowercase();
-    match extension.to_str() {
-        Some("svg") => Ok(Kind::Svg),
-        Some("png") => Ok(Kind::Png),
-        Some("pdf") => Ok(Kind::Pdf),
-        Some("json") => Ok(Kind::Json),
-        _ => Err(format!("{}: outputs end in .svg, .png, .pdf or .json", output.display())),
-    }
-}
-
 pub(super) fn run(arguments: &BuildArgs) -> Ended {
-    let outputs = match outputs(arguments) {
-        Ok(outputs) => outputs,
-        Err(message) => {
-            eprintln!("kake: {message}");
-            return Ended::Usage;
-        }
-    };
+    if let Err(message) = check(arguments) {
+        eprintln!("kake: {message}");
+        return Ended::Usage;
+    }
     if let Some(threads) = arguments.threads {
         // Fails only where the pool is there already, which nothing before this makes.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global();
     }
-    let opened = match open(&arguments.scene.scene, arguments.scene.root.as_deref()) {
-        Ok(opened) => opened,
-        Err(error) => return report::cannot_open(error),
-    };
-    report::locks(opened.loader.packages());
-    let seeds: Vec<Option<u64>> = match arguments.seeds {
-        Some(Seeds(from, to)) => (from..=to).map(Some).collect(),
-        None => vec![arguments.seed],
-    };
-    let mut worst = Ended::Done;
-    for seed in seeds {
-        let ended = build(arguments, &opened, &outputs, seed);
-        match ended {
-            Ended::Done => {}
-            // The same scene is at fault for every seed.
-            Ended::Fault | Ended::Usage => return ended,
-            Ended::Io => worst = ended,
-        }
+    if arguments.watch {
+        return watching::run(arguments);
     }
-    worst
+    match open(&arguments.scene.scene, arguments.scene.root.as_deref()) {
+        Ok(opened) => build(arguments, &opened),
+        Err(error) => report::cannot_open(error),
+    }
 }
 
-fn outputs(arguments: &BuildArgs) -> Result<Vec<(PathBuf, Kind)>, String> {
-    let scene = &arguments.scene.scene;
-    let mut outputs = arguments.output.clone();
-    if outputs.is_empty() {
-        let standard = scene == Path::new("-");
-        let stem = scene.file_stem().unwrap_or_default().to_string_lossy();
-        let seed = if arguments.seeds.is_some() { "-{seed}" } else { "" };
-        let name = if standard { "-".to_owned() } else { format!("{stem}{seed}.svg") };
-        outputs.push(PathBuf::from(name));
+/// Builds once.
+fn build(arguments: &BuildArgs, opened: &Opened) -> Ended {
+    report::locks(opened.loader.packages());
+    if arguments.seeds.is_some() || !arguments.vary.is_empty() || arguments.sheet.is_some() {
+        return batch::run(arguments, opened);
     }
-    let several = arguments.seeds.is_some_and(|Seeds(from, to)| from < to);
+    let mut progress = Progress::new();
+    let job = Job::new(arguments, opened, (arguments.seed, &[]), single(arguments));
+    let done = job.run(&mut progress);
+    let spent = progress.finish();
+    eprint!("{}", done.words);
+    if arguments.timings && done.ended == Ended::Done {
+        report::timings(&spent);
+    }
+    done.ended
+}
+
+/// The outputs that are asked for, or the usual one; `{seed}` and the like are not looked at yet.
+fn asked(arguments: &BuildArgs) -> Vec<PathBuf> {
+    let scene = &arguments.scene.scene;
+    if !arguments.output.is_empty() || arguments.sheet.is_some() {
+        return arguments.output.clone();
+    }
+    let names = arguments.vary.iter().map(|vary| vary.name.as_str()).chain(arguments.seeds.map(|_| "seed"));
+    let names: String = names.map(|name| format!("-{{{name}}}")).collect();
+    let stem = scene.file_stem().unwrap_or_default().to_string_lossy();
+    let is_standard = scene == Path::new("-");
+    vec![PathBuf::from(match (is_standard, names.is_empty()) {
+        (true, true) => "-".to_owned(),
+        (true, false) => format!("stdin{names}.svg"),
+        (false, _) => format!("{stem}{names}.svg"),
+    })]
+}
+
+/// The outputs of a single build.
+fn single(arguments: &BuildArgs) -> Vec<(PathBuf, Kind)> {
+    // In a single build what stands for nothing is a name like any other.
+    let seed = |name: &str| match (name, arguments.seed) {
+        ("seed", Some(seed)) => Some(seed.to_string()),
+        _ => Some(format!("{{{name}}}")),
+    };
+    let file = |output: PathBuf| expanded(&output, &seed).unwrap_or(output);
+    let kinds = asked(arguments).into_iter().map(|output| kind_of(&output).map(|kind| (file(output), kind)));
+    kinds.filter_map(Result::ok).collect()
+}
+
+/// What a command line can be refused for before anything is read.
+fn check(arguments: &BuildArgs) -> Result<(), String> {
+    let scene = &arguments.scene.scene;
+    let outputs = asked(arguments);
     if arguments.form == Some(Form::Pattern) && outputs.iter().all(|output| kind_of(output) != Ok(Kind::Svg)) {
         return Err("`--as pattern` is about SVG: no output ends in .svg".to_owned());
     }
     for (i, output) in outputs.iter().enumerate() {
-        if several && !output.to_string_lossy().contains("{seed}") {
-            return Err(format!("{}: with several seeds an output needs {{seed}} in its name", output.display()));
-        }
-        if arguments.plot && kind_of(output) != Ok(Kind::Svg) {
+        let kind = kind_of(output)?;
+        if arguments.plot && kind != Kind::Svg {
             return Err(format!("{}: what is plotted is written as .svg", output.display()));
         }
         if outputs[..i].contains(output) {
@@ -170,165 +182,8 @@ fn outputs(arguments: &BuildArgs) -> Result<Vec<(PathBuf, Kind)>, String> {
             return Err(format!("{} is the scene itself", output.display()));
         }
     }
-    outputs.into_iter().map(|output| kind_of(&output).map(|kind| (output, kind))).collect()
-}
-
-fn same_file(output: &Path, scene: &Path) -> bool {
-    match (output.canonicalize(), scene.canonicalize()) {
-        // A picture may be built again over itself.
-        (Ok(output), Ok(scene)) => output == scene && kind_of(&scene).is_err(),
-        _ => false,
+    if arguments.watch && (scene == Path::new("-") || outputs.iter().any(|output| output == Path::new("-"))) {
+        return Err("`--watch` follows a file and writes files; - is none".to_owned());
     }
-}
-
-fn build(arguments: &BuildArgs, opened: &Opened, outputs: &[(PathBuf, Kind)], seed: Option<u64>) -> Ended {
-    let mut progress = Progress::new();
-    let mut config: Config = arguments.scene.config(seed);
-    config.lower.dpi = arguments.dpi;
-    config.only.clone_from(&arguments.only);
-    take_over(&mut config, opened);
-    if !arguments.plot {
-        config.overlays = overlays(&arguments.overlay, opened);
-    }
-    let form = arguments.form.or_else(|| Form::of(opened)).unwrap_or(Form::Page);
-    let mut compiled = compile(&opened.path, &opened.loader, &config, &mut progress);
-    if outputs.iter().any(|(_, kind)| *kind == Kind::Png) {
-        check_pixels(&mut compiled, &config.lower.limits);
-    }
-    let ended = report::diagnostics(&compiled.lowered.diagnostics, &compiled.lowered.sources);
-    let missing = |diagnostic: &Diagnostic| matches!(diagnostic.code, Code::File | Code::Import);
-    if opened.picture.is_some() && compiled.lowered.diagnostics.iter().any(missing) {
-        eprintln!("kake: the picture holds its scene, but not every file that the scene reads");
-        eprintln!("kake: name the folder they lie in by `--root DIR`, or build pictures with `--embed all`");
-    }
-    let Some(drawing) = &compiled.drawing else { return ended };
-    if ended != Ended::Done {
-        return ended;
-    }
-    let repeats = compiled.lowered.scene.as_ref().is_some_and(|scene| scene.canvas.period().is_some());
-    if form == Form::Pattern && !repeats {
-        eprintln!("kake: a pattern needs a canvas that repeats: `canvas {{ … repeat: true }}`");
-        return Ended::Fault;
-    }
-    // What is shown on top of a picture is no part of its plot.
-    let is_plotted = arguments.plot || config.overlays.is_empty() && opened.picture.as_ref().is_some_and(is_plot);
-    let mut metadata = metadata(arguments.embed, &config, (opened, form), &compiled);
-    let plot = (is_plotted && outputs.iter().any(|(_, kind)| *kind == Kind::Svg)).then(|| {
-        progress.step("plot", "");
-        plot(drawing)
-    });
-    if plot.is_some()
-        && let Some(metadata) = &mut metadata
-    {
-        set_plot(metadata);
-    }
-    // All are written beside their places first, so that a full disk leaves every old file as it was.
-    let mut pending = Vec::new();
-    for (output, kind) in outputs {
-        progress.step(kind.name(), "");
-        let target = target(output, seed);
-        let drawing = match (&plot, kind) {
-            (Some(plot), Kind::Svg) => &plot.drawing,
-            (_, Kind::Svg | Kind::Png | Kind::Pdf | Kind::Json) => drawing,
-        };
-        match write(drawing, metadata.as_ref(), (*kind, form), &target) {
-            Ok(file) => pending.extend(file.map(|file| (target, file))),
-            Err(error) => return cannot_write(&target, &error),
-        }
-    }
-    for (target, file) in pending {
-        if let Err(error) = file.keep() {
-            return cannot_write(&target, &error);
-        }
-    }
-    let spent = progress.finish();
-    if let Some(plot) = &plot {
-        report::plot(plot);
-    }
-    if arguments.timings {
-        for (name, spent) in spent {
-            eprintln!("{name:>8} {:>10.1} ms", spent.as_secs_f64() * 1000.0);
-        }
-    }
-    Ended::Done
-}
-
-impl Kind {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Svg => "svg",
-            Self::Png => "png",
-            Self::Pdf => "pdf",
-            Self::Json => "json",
-        }
-    }
-}
-
-fn target(output: &Path, seed: Option<u64>) -> PathBuf {
-    match seed {
-        Some(seed) => PathBuf::from(output.to_string_lossy().replace("{seed}", &seed.to_string())),
-        None => output.to_owned(),
-    }
-}
-
-pub(super) fn cannot_write(target: &Path, error: &io::Error) -> Ended {
-    if error.kind() == io::ErrorKind::BrokenPipe {
-        return Ended::Done;
-    }
-    eprintln!("kake: cannot write {}: {}", target.display(), plain(error));
-    Ended::Io
-}
-
-/// A picture of more pixels than the limit is not drawn.
-fn check_pixels(compiled: &mut Compiled, limits: &Limits) {
-    let Some(drawing) = &compiled.drawing else { return };
-    let [width, height] = drawing.page.pixels;
-    let most = limits.megapixels.saturating_mul(1_000_000);
-    let pixels = u64::from(width) * u64::from(height);
-    if pixels <= most {
-        return;
-    }
-    let message =
-        format!("the PNG would have {width} x {height} pixels; the limit is {} megapixels", limits.megapixels);
-    let diagnostic = match compiled.lowered.canvas_span {
-        Some(span) => Diagnostic::error(Code::Limit, span, message),
-        None => Diagnostic::without_span(Code::Limit, message),
-    };
-    let hint = format!("give a lower `dpi`, or lift it: `--limit megapixels={}`", pixels.div_ceil(1_000_000));
-    compiled.lowered.diagnostics.push(diagnostic.hint(hint));
-    compiled.drawing = None;
-}
-
-/// Writes one output beside its place; standard output is written at once.
-pub(super) fn write(
-    drawing: &Drawing,
-    metadata: Option<&Metadata>,
-    (kind, form): (Kind, Form),
-    target: &Path,
-) -> io::Result<Option<Pending>> {
-    let fill = |out: &mut dyn Write| match kind {
-        Kind::Svg => match form {
-            Form::Page => svg::write(drawing, metadata, out),
-            Form::Pattern => {
-                let stem = target.file_stem().unwrap_or_default().to_string_lossy();
-                svg::write_pattern(drawing, &stem, metadata, out)
-            }
-        },
-        Kind::Pdf => pdf::write(drawing, metadata, out),
-        Kind::Json => json::write(drawing, out),
-        Kind::Png => png::write(drawing, metadata, out).map_err(|error| match error {
-            png::PngError::Io(error) => error,
-            png::PngError::Format(message) => io::Error::other(message),
-        }),
-    };
-    if target == Path::new("-") {
-        let mut bytes = Vec::new();
-        fill(&mut bytes)?;
-        return match print(&bytes) {
-            Ended::Done => Ok(None),
-            // What went wrong was said already.
-            _ => Err(io::Error::other("standard output failed")),
-        };
-    }
-    write_beside(target, fill).map(Some)
+    vary::check(arguments)
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use crate::bundle;
 use crate::span::{Sources, Syntax};
 use crate::syntax::{self, format, kake, toml};
 
@@ -56,6 +57,11 @@ pub(super) fn run(arguments: &ConvertArgs) -> Ended {
         Ok(decoded) => decoded,
         Err(diagnostic) => return report::diagnostics(&[diagnostic], &sources),
     };
+    if !bundle::split(&text).1.is_empty() {
+        eprintln!("kake: {name} is a bundle, and its files would be lost");
+        eprintln!("kake: `kake bundle {name} --extract DIR` takes it apart");
+        return Ended::Usage;
+    }
     let (document, diagnostics) = match from {
         Syntax::Kake => kake::parse(source, &text),
         Syntax::Toml => toml::read(source, &text),

@@ -4,17 +4,19 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Component, Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::back::metadata::{self, Metadata};
-use crate::library::MANIFEST;
+use crate::bundle;
+use crate::library::{LOCK, MANIFEST};
 use crate::loader::{self, LoadError, Loader, UnknownDependency};
 
 use super::Ended;
 use super::packages::{Faults, Packages, is_foreign};
+use super::watch::{Stamp, Stamps};
 
 /// The largest file that is read.
-const LARGEST: u64 = 1 << 30;
+pub(super) const LARGEST: u64 = 1 << 30;
 
 /// What a scene read from standard input is called.
 const STDIN: &str = "stdin.kake";
@@ -26,14 +28,35 @@ pub(super) struct FsLoader {
     /// Files that stand in for those of the root: standard input, or what a picture holds.
     held: BTreeMap<String, Arc<[u8]>>,
     packages: Packages,
-    /// Keys of dependencies that a picture knows by shorter ones.
+    /// Keys of dependencies that a picture or a bundle knows by shorter ones.
     aliases: BTreeMap<String, String>,
+    /// The scene of a bundle, with the file that holds both.
+    bundle: Option<(String, PathBuf)>,
+    /// The files that were asked for, those that are missing too, as they stood just before.
+    asked: Mutex<Stamps>,
 }
 
 impl FsLoader {
+    /// Reads files below a root, and those of the libraries that it depends on.
+    fn new(root: PathBuf, packages: Packages) -> Self {
+        let (held, aliases) = (BTreeMap::new(), BTreeMap::new());
+        Self { root, held, packages, aliases, bundle: None, asked: Mutex::default() }
+    }
+
+    /// Of a root folder, in which files that are held stand in for those on disk.
+    pub(super) fn at(root: PathBuf, held: BTreeMap<String, Arc<[u8]>>) -> Result<Self, Faults> {
+        let packages = Packages::find(&root)?;
+        Ok(Self { held, ..Self::new(root, packages) })
+    }
+
     /// Where the file of a name lies, as texts are called in `Sources`; none for what lies in no file: standard input,
     /// what a picture holds, standard libraries and values from the command line.
     pub(super) fn place(&self, path: &str) -> Option<PathBuf> {
+        if let Some((scene, file)) = &self.bundle
+            && scene == path
+        {
+            return Some(file.clone());
+        }
         if self.held.contains_key(path) || path.starts_with("--") {
             return None;
         }
@@ -58,6 +81,23 @@ impl FsLoader {
         let mut aliases = self.packages.aliases();
         aliases.extend(self.aliases.clone());
         aliases
+    }
+
+    /// Every file that mattered so far, the libraries' manifests included: when one of them changes, so may the picture.
+    pub(super) fn followed(&self) -> Stamps {
+        let mut stamps = self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let folders = self.packages.dependencies().iter().map(|package| package.folder.as_path());
+        for folder in folders.chain([self.root.as_path()]) {
+            for name in [MANIFEST, LOCK] {
+                let path = folder.join(name);
+                let stamp = Stamp::of(&path);
+                stamps.entry(path).or_insert(stamp);
+            }
+        }
+        if let Some((_, bundle)) = &self.bundle {
+            stamps.entry(bundle.clone()).or_insert_with(|| Stamp::of(bundle));
+        }
+        stamps
     }
 
     /// Reads a file below a folder.
@@ -86,6 +126,10 @@ impl Loader for FsLoader {
     fn load(&self, path: &str) -> Result<Arc<[u8]>, LoadError> {
         if let Some(bytes) = self.held.get(path) {
             return Ok(Arc::clone(bytes));
+        }
+        if let Some(place) = self.place(path) {
+            let stamp = Stamp::of(&place);
+            self.asked.lock().unwrap_or_else(PoisonError::into_inner).entry(place).or_insert(stamp);
         }
         match loader::split(path) {
             ("", _) => Self::read(&self.root, path),
@@ -146,8 +190,12 @@ pub(super) fn open(scene: &Path, root: Option<&Path>) -> Result<Opened, OpenErro
         let root = root.canonicalize().map_err(|error| failed(root, &error))?;
         let held = BTreeMap::from([(STDIN.to_owned(), Arc::from(text))]);
         let packages = Packages::find(&root).map_err(OpenError::Manifest)?;
-        let loader = FsLoader { root, held, packages, aliases: BTreeMap::new() };
-        return Ok(Opened { loader, path: STDIN.to_owned(), picture: None });
+        let mut loader = FsLoader { held, ..FsLoader::new(root, packages) };
+        let path = match unpack(&mut loader, scene, STDIN)? {
+            Some(path) => path,
+            None => STDIN.to_owned(),
+        };
+        return Ok(Opened { loader, path, picture: None });
     }
     let full = scene.canonicalize().map_err(|error| failed(scene, &error))?;
     let folder = full.parent().unwrap_or(&full).to_owned();
@@ -155,29 +203,91 @@ pub(super) fn open(scene: &Path, root: Option<&Path>) -> Result<Opened, OpenErro
         Some(root) => root.canonicalize().map_err(|error| failed(root, &error))?,
         None => folder.ancestors().find(|dir| dir.join(MANIFEST).is_file()).unwrap_or(&folder).to_owned(),
     };
-    let extension = full.extension().unwrap_or_default().to_ascii_lowercase();
-    if extension == "svg" || extension == "png" || extension == "pdf" {
+    if is_picture(&full) {
         let bytes = fs::read(&full).map_err(|error| failed(scene, &error))?;
-        let Some(picture) = metadata::extract(&bytes) else {
-            return Err(OpenError::NoScene(scene.display().to_string()));
-        };
-        let texts = picture.sources.iter().map(|(path, text)| (path.clone(), Arc::from(text.as_bytes())));
-        let files = picture.files.iter().map(|(path, bytes)| (path.clone(), Arc::from(&bytes[..])));
-        let held = texts.chain(files).collect();
-        let path = picture.scene.clone();
-        // What is wrong with a library that the picture happens to lie in does not matter to what it holds.
-        let packages = Packages::find(&root).unwrap_or_else(|_| Packages::alone(&root));
-        let loader = FsLoader { root, held, packages, aliases: picture.dependencies.clone() };
-        return Ok(Opened { loader, path, picture: Some(picture) });
+        return picture(&bytes, &root, scene.display().to_string());
     }
     let Ok(inside) = full.strip_prefix(&root) else {
         let message = format!("{} does not lie below the root {}", scene.display(), root.display());
         return Err(OpenError::Words(message, Ended::Usage));
     };
     let path = slashed(inside);
-    let packages = Packages::find(&root).map_err(OpenError::Manifest)?;
-    let loader = FsLoader { root, held: BTreeMap::new(), packages, aliases: BTreeMap::new() };
+    let bytes = bundled(&full).map_err(|error| failed(scene, &error))?;
+    let packages = match (&bytes, Packages::find(&root)) {
+        (_, Ok(packages)) => packages,
+        // What is wrong with a library that a bundle happens to lie in does not matter to what it holds.
+        (Some(_), Err(_)) => Packages::alone(&root),
+        (None, Err(faults)) => return Err(OpenError::Manifest(faults)),
+    };
+    let mut loader = FsLoader::new(root, packages);
+    if let Some(bytes) = bytes {
+        loader.held.insert(path.clone(), bytes);
+        if let Some(held) = unpack(&mut loader, scene, &path)? {
+            loader.bundle = Some((held.clone(), full));
+            return Ok(Opened { loader, path: held, picture: None });
+        }
+        loader.held.clear();
+    }
     Ok(Opened { loader, path, picture: None })
+}
+
+/// The bytes of a file that may be a bundle: no other is read before it is asked for.
+fn bundled(full: &Path) -> io::Result<Option<Arc<[u8]>>> {
+    if fs::metadata(full)?.len() > LARGEST {
+        return Ok(None);
+    }
+    let bytes = fs::read(full)?;
+    let is_bundle = std::str::from_utf8(&bytes).is_ok_and(|text| !bundle::split(text).1.is_empty());
+    Ok(is_bundle.then(|| bytes.into()))
+}
+
+/// Where the file that is held under a path is a bundle, holds what is in it too; the path of its scene.
+fn unpack(loader: &mut FsLoader, scene: &Path, path: &str) -> Result<Option<String>, OpenError> {
+    let Some(bytes) = loader.held.get(path).cloned() else { return Ok(None) };
+    let Ok(text) = std::str::from_utf8(&bytes) else { return Ok(None) };
+    let refused = |error| OpenError::Words(format!("{}: {error}", scene.display()), Ended::Fault);
+    let Some(bundle) = bundle::read(text).map_err(refused)? else { return Ok(None) };
+    // The scene is called after the bundle, but lies where it lay among its files.
+    let file = path.rsplit('/').next().unwrap_or(path);
+    let beside =
+        bundle.scene.rsplit_once('/').map_or_else(|| file.to_owned(), |(folder, _)| format!("{folder}/{file}"));
+    let is_taken = bundle.files.iter().any(|(path, _)| *path == beside);
+    let main = if is_taken { bundle.scene } else { beside };
+    loader.held.remove(path);
+    loader.held.extend(bundle.files.into_iter().map(|(path, bytes)| (path, bytes.into())));
+    loader.held.insert(main.clone(), bytes);
+    loader.aliases = bundle.dependencies;
+    Ok(Some(main))
+}
+
+/// Whether a file is a picture, which may hold a scene.
+pub(super) fn is_picture(path: &Path) -> bool {
+    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+    extension == "svg" || extension == "png" || extension == "pdf"
+}
+
+/// The scene that the bytes of a picture hold, with this root for what they do not; messages call the picture `name`.
+pub(super) fn picture(bytes: &[u8], root: &Path, name: String) -> Result<Opened, OpenError> {
+    let Some(picture) = metadata::extract(bytes) else { return Err(OpenError::NoScene(name)) };
+    let texts = picture.sources.iter().map(|(path, text)| (path.clone(), Arc::from(text.as_bytes())));
+    let files = picture.files.iter().map(|(path, bytes)| (path.clone(), Arc::from(&bytes[..])));
+    let held = texts.chain(files).collect();
+    let path = picture.scene.clone();
+    // What is wrong with a library that the picture happens to lie in does not matter to what it holds.
+    let packages = Packages::find(root).unwrap_or_else(|_| Packages::alone(root));
+    let loader = FsLoader { held, aliases: picture.dependencies.clone(), ..FsLoader::new(root.to_owned(), packages) };
+    Ok(Opened { loader, path, picture: Some(picture) })
+}
+
+/// The loader of scenes that lie in a folder, saved or not, and what is wrong with the manifests of their libraries.
+pub(super) fn beside(folder: &Path) -> (FsLoader, Option<Faults>) {
+    let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    let root = folder.ancestors().find(|dir| dir.join(MANIFEST).is_file()).unwrap_or(&folder).to_owned();
+    let (packages, faults) = match Packages::find(&root) {
+        Ok(packages) => (packages, None),
+        Err(faults) => (Packages::alone(&root), Some(faults)),
+    };
+    (FsLoader::new(root, packages), faults)
 }
 
 /// A relative path with forward slashes.
@@ -275,6 +385,14 @@ pub(super) fn replace(target: &Path, text: &str) -> Ended {
 }
 
 impl Pending {
+    /// Moves the file to its place, if no other has come there meanwhile.
+    pub(super) fn keep_new(self) -> io::Result<()> {
+        match self.file {
+            Written::Beside(file) => file.persist_noclobber(&self.target).map_err(|error| error.error),
+            Written::Straight => Ok(()),
+        }
+    }
+
     /// Moves the file to its place.
     pub(super) fn keep(self) -> io::Result<()> {
         match self.file {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use crate::bundle;
 use crate::span::{Sources, Syntax};
 use crate::syntax::{self, format, kake};
 
@@ -79,9 +80,12 @@ fn formatted(name: &str, bytes: &[u8]) -> Result<String, Ended> {
         Ok(decoded) => decoded,
         Err(diagnostic) => return Err(report::diagnostics(&[diagnostic], &sources)),
     };
-    let (document, diagnostics) = kake::parse(source, &text);
+    // The files behind a bundle's scene stay as they are.
+    let (text, files) = bundle::split(&text);
+    let (document, diagnostics) = kake::parse(source, text);
     if report::diagnostics(&diagnostics, &sources) == Ended::Fault {
         return Err(Ended::Fault);
     }
-    Ok(format::format(&document, &text))
+    let blank = if files.is_empty() { "" } else { "\n" };
+    Ok(format::format(&document, text) + blank + files)
 }

@@ -2,6 +2,8 @@
 
 use crate::scene::Limits;
 
+use super::SceneArgs;
+
 /// The limits that `--limit` lifts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Limit {
@@ -21,6 +23,20 @@ const NAMES: [(&str, Limit); 6] = [
     ("nesting", Limit::Nesting),
     ("runs", Limit::Runs),
 ];
+
+impl Limit {
+    fn name(self) -> &'static str {
+        NAMES.iter().find(|(_, limit)| *limit == self).map_or("", |(name, _)| name)
+    }
+}
+
+/// The root and the limits of a command line as they are written there.
+pub(super) fn written(arguments: &SceneArgs) -> Vec<String> {
+    let root = arguments.root.iter().flat_map(|root| ["--root".to_owned(), root.to_string_lossy().into_owned()]);
+    let limits =
+        arguments.limit.iter().flat_map(|(limit, value)| ["--limit".to_owned(), format!("{}={value}", limit.name())]);
+    root.chain(limits).collect()
+}
 
 /// Calls may be nested this deep at most: the stack has no room for more.
 const DEEPEST: u64 = 1000;

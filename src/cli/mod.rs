@@ -6,24 +6,30 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod build;
+mod bundle;
 mod check;
 mod convert;
+mod diff;
 mod experiment;
 mod explain;
 mod files;
 mod fmt;
+mod gallery;
 mod ir;
 mod limits;
 mod lock;
+mod lsp;
 mod man;
 mod metrics;
 mod new;
 mod packages;
 mod params;
 mod picture;
+mod preview;
 mod progress;
 mod report;
 mod test;
+mod watch;
 mod wedge;
 
 use std::ffi::OsString;
@@ -82,6 +88,8 @@ struct Cli {
 enum Command {
     /// Compile a scene to a picture
     Build(build::BuildArgs),
+    /// Show a scene in a browser, drawn again whenever it is saved
+    Preview(preview::PreviewArgs),
     /// Say what is wrong with scenes, without drawing them
     Check(check::CheckArgs),
     /// Bring scenes into their canonical form
@@ -102,10 +110,18 @@ enum Command {
     New(new::NewArgs),
     /// Say which swatches of a library do not look as they were pinned
     Test(test::TestArgs),
+    /// Put a scene and all that it reads into one file, or take such a file apart
+    Bundle(bundle::BundleArgs),
+    /// Show tones and scenes on a page and a contact sheet
+    Gallery(gallery::GalleryArgs),
     /// Lock what a library depends on: writes the hashes of its dependencies into kake.lock
     Lock(lock::LockArgs),
+    /// Say what changed between two scenes or two revisions of one, and picture it; works with git's difftool and as a driver
+    Diff(Box<diff::DiffArgs>),
     /// Explain a diagnostic's code, or list them all
     Explain(explain::ExplainArgs),
+    /// Serve editors: the Language Server Protocol on standard input and output
+    Lsp(lsp::LspArgs),
     /// Print a completion script for a shell
     Completions(CompletionsArgs),
     /// Print the manual page, or write one for each command
@@ -148,7 +164,7 @@ impl SceneArgs {
 
 /// Runs the command line and says how it ended.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let cli = match Cli::try_parse_from(arguments) {
+    let cli = match Cli::try_parse_from(diff::guarded(arguments)) {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version are results; whatever else clap says is about the command line.
@@ -158,6 +174,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     let ended = match cli.command {
         Command::Build(arguments) => build::run(&arguments),
+        Command::Preview(arguments) => preview::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Fmt(arguments) => fmt::run(&arguments),
         Command::Convert(arguments) => convert::run(&arguments),
@@ -168,8 +185,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Experiment(arguments) => experiment::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Test(arguments) => test::run(&arguments),
+        Command::Bundle(arguments) => bundle::run(&arguments),
+        Command::Gallery(arguments) => gallery::run(&arguments),
         Command::Lock(arguments) => lock::run(&arguments),
+        Command::Diff(arguments) => diff::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Lsp(arguments) => lsp::run(&arguments),
         Command::Completions(arguments) => {
             let mut script = Vec::new();
             clap_complete::generate(arguments.shell, &mut Cli::command(), "kake", &mut script);

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use clap::ValueEnum;
 
 use crate::back::metadata::Metadata;
+use crate::bundle;
 use crate::lower::Lowered;
 use crate::overlay::Overlay;
 use crate::{Compiled, Config};
@@ -133,7 +134,8 @@ pub(super) fn metadata(
 }
 
 /// The texts of files; values from the command line are kept as parameters.
-fn sources(lowered: &Lowered) -> Vec<(String, String)> {
+pub(super) fn sources(lowered: &Lowered) -> Vec<(String, String)> {
     let files = lowered.sources.iter().filter(|(_, source)| !source.name.starts_with("--"));
-    files.map(|(_, source)| (source.name.clone(), source.text.to_string())).collect()
+    // What a bundle holds besides its scene are files of their own.
+    files.map(|(_, source)| (source.name.clone(), bundle::split(&source.text).0.to_owned())).collect()
 }

@@ -28,6 +28,11 @@ impl Progress {
         Self { begun: Instant::now(), current: None, spent: Vec::new(), bar }
     }
 
+    /// From now on, without a bar: one of several builds at a time.
+    pub(super) fn unseen() -> Self {
+        Self { begun: Instant::now(), current: None, spent: Vec::new(), bar: ProgressBar::hidden() }
+    }
+
     /// A step begins, and the one before it ends.
     pub(super) fn step(&mut self, name: &str, detail: &str) {
         self.close();

@@ -1,6 +1,7 @@
 //! Diagnostics, and what a plot costs, on standard error.
 
 use std::io::{self, IsTerminal};
+use std::time::Duration;
 
 use crate::back::plot::{Plot, Travel};
 use crate::diag::{Code, Diagnostic, RenderConfig, render};
@@ -16,11 +17,7 @@ const WIDTH: usize = 100;
 
 /// Prints diagnostics; a fault if any is an error.
 pub(super) fn diagnostics(diagnostics: &[Diagnostic], sources: &Sources) -> Ended {
-    if !diagnostics.is_empty() {
-        let terminal = io::stderr().is_terminal();
-        let colour = terminal && std::env::var_os("NO_COLOR").is_none();
-        eprint!("{}", render(diagnostics, sources, RenderConfig { width: WIDTH, colour, unicode: true }));
-    }
+    eprint!("{}", words(diagnostics, sources));
     if diagnostics.iter().any(Diagnostic::is_error) { Ended::Fault } else { Ended::Done }
 }
 
@@ -30,6 +27,16 @@ pub(super) fn text(diagnostics: &[Diagnostic], sources: &Sources) -> String {
         [] => String::new(),
         found => render(found, sources, RenderConfig { width: WIDTH, colour: false, unicode: true }),
     }
+}
+
+/// Diagnostics as they are printed to standard error.
+pub(super) fn words(diagnostics: &[Diagnostic], sources: &Sources) -> String {
+    if diagnostics.is_empty() {
+        return String::new();
+    }
+    let terminal = io::stderr().is_terminal();
+    let colour = terminal && std::env::var_os("NO_COLOR").is_none();
+    render(diagnostics, sources, RenderConfig { width: WIDTH, colour, unicode: true })
 }
 
 /// Says why a scene cannot be opened.
@@ -55,10 +62,11 @@ pub(super) fn locks(packages: &Packages) {
     diagnostics(&found, &sources);
 }
 
-/// Says how far a pen goes in each layer of a plot and in all of them, and what is not drawn as it looks.
-pub(super) fn plot(plot: &Plot) {
+/// How far a pen goes in each layer of a plot and in all of them, and what is not drawn as it looks.
+pub(super) fn plot(plot: &Plot) -> String {
+    let mut words = String::new();
     for warning in &plot.warnings {
-        eprintln!("kake: {warning}");
+        words += &format!("kake: {warning}\n");
     }
     let all = plot.layers.iter().fold((Travel::default(), Travel::default()), |(before, after), layer| {
         (before.and(layer.before), after.and(layer.after))
@@ -68,8 +76,8 @@ pub(super) fn plot(plot: &Plot) {
     let rows: Vec<_> = layers.chain(sum).collect();
     let width = rows.iter().map(|(name, ..)| name.chars().count()).max().unwrap_or(0);
     for (name, before, after) in rows {
-        eprintln!(
-            "{name:width$}  {:>8} lifts  {:>9} down  {:>9} up   (as drawn: {} lifts, {} up)",
+        words += &format!(
+            "{name:width$}  {:>8} lifts  {:>9} down  {:>9} up   (as drawn: {} lifts, {} up)\n",
             after.lifts,
             metres(after.down),
             metres(after.up),
@@ -77,10 +85,18 @@ pub(super) fn plot(plot: &Plot) {
             metres(before.up)
         );
     }
+    words
 }
 
 /// A length that may be long.
 fn metres(length: Length) -> String {
     let mm = length.to_mm();
     if mm < 1000.0 { format!("{mm:.1} mm") } else { format!("{:.2} m", mm / 1000.0) }
+}
+
+/// Says how long steps took.
+pub(super) fn timings(spent: &[(String, Duration)]) {
+    for (name, spent) in spent {
+        eprintln!("{name:>8} {:>10.1} ms", spent.as_secs_f64() * 1000.0);
+    }
 }

@@ -41,6 +41,16 @@ pub fn fingerprint(drawing: &Drawing) -> Fingerprint {
     writer.finish()
 }
 
+/// The fingerprint of layers on no page.
+#[must_use]
+pub fn layers<'a>(layers: impl IntoIterator<Item = &'a Layer>) -> Fingerprint {
+    let mut writer = Writer::new();
+    for layer in layers.into_iter().filter(|layer| layer.marks() > 0) {
+        writer.layer(layer);
+    }
+    writer.finish()
+}
+
 /// What follows, so that no two drawings give the same bytes.
 #[derive(Debug, Clone, Copy)]
 #[repr(u8)]

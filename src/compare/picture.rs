@@ -8,6 +8,7 @@
 
 use rayon::prelude::*;
 
+use super::marks::{CAME, STAYED, WENT};
 use crate::back::raster::{Format, Pixels};
 use crate::scene::Colour;
 
@@ -15,12 +16,6 @@ use crate::scene::Colour;
 /// makes of a pixel on another machine.
 const ALIKE: u8 = 5;
 
-/// Ink that went.
-const WENT: [f64; 3] = [215.0, 25.0, 28.0];
-/// Ink that came.
-const CAME: [f64; 3] = [25.0, 85.0, 205.0];
-/// Ink that stayed.
-const STAYED: [f64; 3] = [165.0, 165.0, 165.0];
 /// Paper that went with its part of the sheet.
 const PAPER_WENT: [u8; 3] = [253, 233, 231];
 /// Paper that came.
@@ -104,10 +99,12 @@ fn mixed(went: f64, came: f64, stayed: f64, paper: [u8; 3]) -> [u8; 3] {
     let sum = went + came + stayed;
     let thin = if sum > 1.0 { 1.0 / sum } else { 1.0 };
     let bare = (1.0 - sum).max(0.0);
-    std::array::from_fn(|i| {
-        let inks = went * WENT[i] + came * CAME[i] + stayed * STAYED[i];
-        (thin * inks + bare * f64::from(paper[i])).round() as u8
-    })
+    let channel = |of: fn(Colour) -> u8, paper: u8| {
+        let ink = |colour| f64::from(of(colour));
+        let inks = went * ink(WENT) + came * ink(CAME) + stayed * ink(STAYED);
+        (thin * inks + bare * f64::from(paper)).round() as u8
+    };
+    [channel(|c| c.r, paper[0]), channel(|c| c.g, paper[1]), channel(|c| c.b, paper[2])]
 }
 
 /// A row of a picture as red, green and blue on paper; empty below the picture.

@@ -15,6 +15,7 @@ mod length;
 mod period;
 mod point;
 mod polygon;
+pub mod tree;
 
 pub use angle::Angle;
 pub use bezier::Cubic;

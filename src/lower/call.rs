@@ -12,8 +12,10 @@ use super::value::{FieldUnit, Kind, TypedField, Value};
 use crate::field::Field;
 
 /// What the vocabulary knows of one name.
-pub(super) struct Signature {
+pub struct Signature {
     pub(super) name: &'static str,
+    /// What it is, in a sentence for editors.
+    pub(super) about: &'static str,
     /// The kind of the result, where it does not depend on the arguments.
     pub(super) result: Option<Kind>,
     pub(super) params: &'static [Param],
@@ -22,27 +24,31 @@ pub(super) struct Signature {
 }
 
 /// A parameter of a signature.
-pub(super) struct Param {
+pub struct Param {
     pub(super) name: &'static str,
     pub(super) slot: Slot,
     pub(super) need: Need,
+    /// What it is, in a few words for editors.
+    pub(super) about: &'static str,
 }
 
 /// Whether a parameter must be given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Need {
+pub enum Need {
+    /// It must.
     Required,
-    Optional,
+    /// What it is where it is not given, in words of the language or about them.
+    Optional(&'static str),
 }
 
 /// A parameter that must be given.
-pub(super) const fn required(name: &'static str, slot: Slot) -> Param {
-    Param { name, slot, need: Need::Required }
+pub(super) const fn required(name: &'static str, slot: Slot, about: &'static str) -> Param {
+    Param { name, slot, need: Need::Required, about }
 }
 
-/// A parameter that may be given.
-pub(super) const fn optional(name: &'static str, slot: Slot) -> Param {
-    Param { name, slot, need: Need::Optional }
+/// A parameter that may be given, with what it is otherwise.
+pub(super) const fn optional(name: &'static str, slot: Slot, default: &'static str, about: &'static str) -> Param {
+    Param { name, slot, need: Need::Optional(default), about }
 }
 
 /// An argument that was evaluated.

@@ -12,6 +12,7 @@ use crate::syntax::ast::{Expr, Property, StatementKind};
 use super::convert::Slot;
 use super::cx::Cx;
 use super::eval;
+use super::reference::Property as Known;
 use super::scope::Scope;
 use super::value::{Kind, Value};
 
@@ -35,7 +36,74 @@ const SHEETS: [(&str, f64, f64); 14] = [
 const SHEET_NAMES: &[&str] =
     &["a0", "a1", "a2", "a3", "a4", "a5", "a6", "b4", "b5", "jis_b4", "jis_b5", "legal", "letter", "tabloid"];
 
-const PROPERTIES: [&str; 10] = ["size", "bleed", "dpi", "pixels", "paper", "ink", "depth", "unit", "gain", "repeat"];
+/// The properties of a canvas with what each takes.
+pub(super) const PROPERTIES: [Known; 10] = [
+    Known {
+        name: "size",
+        slot: Slot::or_words(Kind::Point, SHEET_NAMES),
+        default: "",
+        about: "Width and height, or the name of a sheet, upright.",
+    },
+    Known {
+        name: "bleed",
+        slot: Slot::of(Kind::Length),
+        default: "0mm",
+        about: "How far the picture goes on beyond each side, to be trimmed off.",
+    },
+    Known { name: "dpi", slot: Slot::of(Kind::Number), default: "600", about: "Pixels per inch, 1 to 100,000." },
+    Known {
+        name: "pixels",
+        slot: Slot::ANY,
+        default: "from dpi",
+        about: "Width and height of a PNG in whole pixels, instead of `dpi`.",
+    },
+    Known {
+        name: "paper",
+        slot: Slot::or_words(Kind::Colour, &["none"]),
+        default: "white",
+        about: "The colour of the paper, or `none`, which is transparent.",
+    },
+    Known {
+        name: "ink",
+        slot: Slot::of(Kind::Colour),
+        default: "black",
+        about: "The colour of what is drawn, unless a layer or a fill says otherwise.",
+    },
+    Known {
+        name: "depth",
+        slot: Slot::of(Kind::Number),
+        default: "8",
+        about: "8 for 256 greys, 1 for ink or paper, decided at half coverage.",
+    },
+    Known {
+        name: "unit",
+        slot: Slot::of(Kind::Length),
+        default: "1mm",
+        about: "The length that a bare number means, above 0.",
+    },
+    Known {
+        name: "repeat",
+        slot: Slot::of(Kind::Bool),
+        default: "false",
+        about: "Whether the left border continues on the right and the upper one below.",
+    },
+    Known {
+        name: "gain",
+        slot: Slot::of(Kind::Length),
+        default: "0mm",
+        about: "How far ink spreads beyond each edge of a mark, for `darkness` to reckon with.",
+    },
+];
+
+/// The names of the properties.
+fn names() -> impl Iterator<Item = &'static str> + Clone {
+    PROPERTIES.iter().map(|known| known.name)
+}
+
+/// What a property takes.
+fn slot(property: &Property) -> Slot {
+    PROPERTIES.iter().find(|known| known.name == property.name.name).map_or(Slot::ANY, |known| known.slot)
+}
 
 /// Pixels per inch where neither `dpi` nor `pixels` says otherwise: the least that print shops take for line art.
 const DEFAULT_DPI: f64 = 600.0;
@@ -96,13 +164,13 @@ pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Option<Canvas> {
     let size = find("size").and_then(|property| reader.size(property));
     let pixels = find("pixels").and_then(|property| reader.pixels(property));
     let bleed = reader.bleed(find("bleed"));
-    let paper = reader.colour(find("paper"), &["none"], Some(Colour::WHITE));
-    let ink = reader.colour(find("ink"), &[], Some(Colour::BLACK));
+    let paper = reader.colour(find("paper"), Some(Colour::WHITE));
+    let ink = reader.colour(find("ink"), Some(Colour::BLACK));
     let depth = reader.depth(find("depth"));
     let repeat = reader.repeat(find("repeat"));
     let gain = reader.gain(find("gain"));
     // A property that is not known may have been meant for it.
-    let is_known = |property: &&Property| PROPERTIES.contains(&property.name.name.as_str());
+    let is_known = |property: &&Property| names().any(|name| name == property.name.name);
     if find("size").is_none() && given.iter().all(is_known) {
         cx.report(
             Diagnostic::error(Code::Missing, span, "the canvas has no `size`")
@@ -140,9 +208,11 @@ fn check_property(cx: &mut Cx<'_, '_>, property: &Property, earlier: &[&Property
         let message = format!("the property `{}` is given twice", name.name);
         let note = earlier.name.span;
         cx.report(Diagnostic::error(Code::Duplicate, name.span, message).note(note, "first given here"));
-    } else if !PROPERTIES.contains(&name.name.as_str()) {
-        let hint = did_you_mean(&name.name, PROPERTIES)
-            .unwrap_or_else(|| format!("a canvas has {}", PROPERTIES.map(|name| format!("`{name}`")).join(", ")));
+    } else if !names().any(|known| known == name.name) {
+        let hint = did_you_mean(&name.name, names()).unwrap_or_else(|| {
+            let names: Vec<String> = names().map(|name| format!("`{name}`")).collect();
+            format!("a canvas has {}", names.join(", "))
+        });
         let message = format!("a canvas has no property `{}`", name.name);
         cx.report(Diagnostic::error(Code::UnknownProperty, name.span, message).hint(hint));
     }
@@ -193,7 +263,7 @@ impl<'a> Reader<'_, 'a, '_> {
     /// Millimetres greater than zero.
     fn positive(&mut self, property: Option<&'a Property>, default: f64) -> Option<f64> {
         let Some(property) = property else { return Some(default) };
-        let mm = eval::expect(self.cx, self.scope, &property.value, Slot::of(Kind::Length)).as_length()?;
+        let mm = eval::expect(self.cx, self.scope, &property.value, slot(property)).as_length()?;
         if mm > 0.0 && mm <= LARGEST {
             return Some(mm);
         }
@@ -203,7 +273,7 @@ impl<'a> Reader<'_, 'a, '_> {
     /// How far ink spreads. Tones whose pens are no wider are refused where they are painted.
     fn gain(&mut self, property: Option<&'a Property>) -> Option<Length> {
         let Some(property) = property else { return Some(Length::ZERO) };
-        let mm = eval::expect(self.cx, self.scope, &property.value, Slot::of(Kind::Length)).as_length()?;
+        let mm = eval::expect(self.cx, self.scope, &property.value, slot(property)).as_length()?;
         if !(0.0..=LARGEST).contains(&mm) {
             let wrong = if mm < 0.0 { "must not be negative" } else { "is at most 100 metres" };
             return self.refuse(property.value.span, format!("`gain` {wrong}"));
@@ -215,7 +285,7 @@ impl<'a> Reader<'_, 'a, '_> {
     /// How far the picture goes on beyond the page.
     fn bleed(&mut self, property: Option<&'a Property>) -> Option<Length> {
         let Some(property) = property else { return Some(Length::ZERO) };
-        let mm = eval::expect(self.cx, self.scope, &property.value, Slot::of(Kind::Length)).as_length()?;
+        let mm = eval::expect(self.cx, self.scope, &property.value, slot(property)).as_length()?;
         if (0.0..=LARGEST).contains(&mm) {
             return Some(Length::mm(mm));
         }
@@ -226,7 +296,7 @@ impl<'a> Reader<'_, 'a, '_> {
     /// A number in a range; `None` where it is not given.
     fn number(&mut self, property: Option<&'a Property>, low: f64, high: f64) -> Option<f64> {
         let property = property?;
-        let value = eval::expect(self.cx, self.scope, &property.value, Slot::of(Kind::Number)).number()?;
+        let value = eval::expect(self.cx, self.scope, &property.value, slot(property)).number()?;
         if (low..=high).contains(&value) {
             return Some(value);
         }
@@ -234,8 +304,7 @@ impl<'a> Reader<'_, 'a, '_> {
     }
 
     fn size(&mut self, property: &'a Property) -> Option<[Length; 2]> {
-        let slot = Slot::or_words(Kind::Point, SHEET_NAMES);
-        let value = eval::expect(self.cx, self.scope, &property.value, slot);
+        let value = eval::expect(self.cx, self.scope, &property.value, slot(property));
         if let Value::Word(word) = value {
             let sheet = SHEETS.iter().find(|(name, ..)| *name == word);
             return sheet.map(|(_, width, height)| [Length::mm(*width), Length::mm(*height)]);
@@ -277,14 +346,9 @@ impl<'a> Reader<'_, 'a, '_> {
     }
 
     /// A colour; the inner `None` is the word `none`.
-    fn colour(
-        &mut self,
-        property: Option<&'a Property>,
-        words: &'static [&'static str],
-        default: Option<Colour>,
-    ) -> Option<Option<Colour>> {
+    fn colour(&mut self, property: Option<&'a Property>, default: Option<Colour>) -> Option<Option<Colour>> {
         let Some(property) = property else { return Some(default) };
-        match eval::expect(self.cx, self.scope, &property.value, Slot::or_words(Kind::Colour, words)) {
+        match eval::expect(self.cx, self.scope, &property.value, slot(property)) {
             Value::Colour(colour) => Some(Some(colour)),
             Value::Word(_) => Some(None),
             _ => None,
@@ -293,7 +357,7 @@ impl<'a> Reader<'_, 'a, '_> {
 
     fn depth(&mut self, property: Option<&'a Property>) -> Option<Depth> {
         let Some(property) = property else { return Some(Depth::Eight) };
-        match eval::expect(self.cx, self.scope, &property.value, Slot::of(Kind::Number)) {
+        match eval::expect(self.cx, self.scope, &property.value, slot(property)) {
             Value::Number(8.0) => Some(Depth::Eight),
             Value::Number(1.0) => Some(Depth::One),
             Value::Number(_) => self.refuse(property.value.span, "`depth` is 8 (grey) or 1 (ink or paper)"),
@@ -303,7 +367,7 @@ impl<'a> Reader<'_, 'a, '_> {
 
     fn repeat(&mut self, property: Option<&'a Property>) -> Option<Repeat> {
         let Some(property) = property else { return Some(Repeat::Off) };
-        match eval::expect(self.cx, self.scope, &property.value, Slot::of(Kind::Bool)) {
+        match eval::expect(self.cx, self.scope, &property.value, slot(property)) {
             Value::Bool(true) => Some(Repeat::Both),
             Value::Bool(false) => Some(Repeat::Off),
             _ => None,

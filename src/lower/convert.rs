@@ -12,31 +12,38 @@ use super::value::{FieldUnit, Kind, TypedField, Value};
 
 /// What a place takes, and so which bare names it knows.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Slot {
+pub struct Slot {
     /// The kind, where only one will do.
-    pub(super) kind: Option<Kind>,
+    pub kind: Option<Kind>,
     /// Words that stand here as well.
-    pub(super) words: &'static [&'static str],
+    pub words: &'static [&'static str],
 }
 
 impl Slot {
     /// Anything.
-    pub(super) const ANY: Self = Self { kind: None, words: &[] };
+    pub const ANY: Self = Self { kind: None, words: &[] };
 
-    pub(super) const fn of(kind: Kind) -> Self {
+    /// Values of one kind.
+    #[must_use]
+    pub const fn of(kind: Kind) -> Self {
         Self { kind: Some(kind), words: &[] }
     }
 
-    pub(super) const fn words(words: &'static [&'static str]) -> Self {
+    /// Nothing but these words.
+    #[must_use]
+    pub const fn words(words: &'static [&'static str]) -> Self {
         Self { kind: Some(Kind::Word), words }
     }
 
-    pub(super) const fn or_words(kind: Kind, words: &'static [&'static str]) -> Self {
+    /// Values of one kind, or these words.
+    #[must_use]
+    pub const fn or_words(kind: Kind, words: &'static [&'static str]) -> Self {
         Self { kind: Some(kind), words }
     }
 
     /// What it takes, in words.
-    fn expectation(self) -> String {
+    #[must_use]
+    pub fn expectation(self) -> String {
         let words = self.words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
         match (self.kind, self.words.is_empty()) {
             (None, _) => "any value".to_owned(),

@@ -15,6 +15,7 @@ use crate::span::{SourceId, Span};
 use super::LowerConfig;
 use super::modules::Module;
 use super::params;
+use super::survey::Survey;
 use super::value::Value;
 
 /// How deep evaluation may go before the stack is at risk. The thread that lowers has room for it.
@@ -58,6 +59,8 @@ pub(super) struct Cx<'a, 'c> {
     pub(super) drawings: BTreeMap<String, Option<Rc<SvgFile>>>,
     /// Warnings of tones that lack something, until a paint says so.
     pub(super) lacking: Vec<Diagnostic>,
+    /// What is found out about names, where somebody asks.
+    pub(super) survey: Option<Box<Survey>>,
     /// Dead branches that were checked already.
     pub(super) checked: BTreeSet<Span>,
     /// Calls of functions, tones and lazy values that are under way.
@@ -101,6 +104,7 @@ impl<'a, 'c> Cx<'a, 'c> {
             blurred_pixels: 0,
             drawings: BTreeMap::new(),
             lacking: Vec::new(),
+            survey: None,
             checked: BTreeSet::new(),
             calls: 0,
             under_way: Vec::new(),
@@ -167,6 +171,9 @@ impl<'a, 'c> Cx<'a, 'c> {
 
     /// Goes one level deeper; `None`, with a diagnostic, where that is too deep.
     pub(super) fn deeper<T>(&mut self, span: Span, inner: impl FnOnce(&mut Self) -> T) -> Option<T> {
+        if self.config.limits.stop.is_asked() {
+            return None;
+        }
         if self.depth >= DEPTH {
             let message = format!("values lead into each other more than {DEPTH} steps deep");
             self.report(Diagnostic::error(Code::Recursion, span, message));

@@ -210,6 +210,7 @@ fn repeat<'a>(
         }
         ran = true;
         let inner = Scope::inside(scope);
+        cx.note_value(variable.span, &value);
         inner.declare(&variable.name, Binding::Value(value), variable.span);
         block(cx, &inner, body, out);
         true

@@ -51,7 +51,11 @@ pub(super) fn expect<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, expr: &'a E
 fn eval_kind<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, expr: &'a Expr, slot: Slot) -> Value {
     match &expr.kind {
         ExprKind::Number { value, unit, .. } => number(cx, *value, *unit, expr.span),
-        ExprKind::Colour(text) => colour(text),
+        ExprKind::Colour(text) => {
+            let value = colour(text);
+            cx.note_colour(expr.span, &value);
+            value
+        }
         ExprKind::String(parts) => string(cx, scope, parts, expr.span),
         ExprKind::Bool(truth) => Value::Bool(*truth),
         ExprKind::Name(name) => names::name(cx, scope, name, expr.span, slot),

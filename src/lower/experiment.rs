@@ -12,10 +12,37 @@ use super::convert::Slot;
 use super::cx::Cx;
 use super::eval;
 use super::params;
+use super::reference::Property as Known;
 use super::scope::Scope;
 use super::value::{Kind, Member, Value};
 
-const PROPERTIES: [&str; 4] = ["seeds", "factors", "reference", "images"];
+/// The properties of experiments with what each takes.
+pub(super) const PROPERTIES: [Known; 4] = [
+    Known { name: "seeds", slot: Slot::of(Kind::Range), default: "", about: "A range of whole numbers, both ends in." },
+    Known {
+        name: "factors",
+        slot: Slot::of(Kind::Record),
+        default: "none",
+        about: "Parameters with the lists of their levels; the conditions are all combinations.",
+    },
+    Known {
+        name: "reference",
+        slot: Slot::of(Kind::List),
+        default: "none",
+        about: "Conditions outside the design, each a record of values of some parameters.",
+    },
+    Known {
+        name: "images",
+        slot: Slot::of(Kind::Record),
+        default: "none",
+        about: "Parameters with the values that each condition is drawn with, in all combinations.",
+    },
+];
+
+/// The names of the properties.
+fn names() -> impl Iterator<Item = &'static str> {
+    PROPERTIES.iter().map(|known| known.name)
+}
 
 /// Every experiment of the first module.
 pub(super) fn lower(cx: &mut Cx<'_, '_>) -> Vec<Experiment> {
@@ -80,13 +107,13 @@ fn one<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &Ident, properties:
             other => {
                 eval::eval(cx, scope, &property.value, Slot::ANY);
                 let message = format!("experiments have no property `{other}`");
-                let hint = did_you_mean(other, PROPERTIES)
-                    .unwrap_or_else(|| format!("experiments have `{}`", PROPERTIES.join("`, `")));
+                let hint = did_you_mean(other, names())
+                    .unwrap_or_else(|| format!("experiments have `{}`", names().collect::<Vec<_>>().join("`, `")));
                 cx.report(Diagnostic::error(Code::UnknownProperty, key.span, message).hint(hint));
             }
         }
     }
-    let is_unknown = |key: &&Ident| !PROPERTIES.contains(&key.name.as_str());
+    let is_unknown = |key: &&Ident| !names().any(|name| name == key.name);
     if !seen.iter().any(|key| key.name == "seeds") {
         // A property that is not known may have been meant for it.
         if seen.iter().any(is_unknown) {
@@ -119,6 +146,7 @@ fn seeds(cx: &mut Cx<'_, '_>, value: &Value, span: Span) -> Option<[u64; 2]> {
 fn known_param(cx: &mut Cx<'_, '_>, member: &Member) -> bool {
     let names = params::names(cx);
     if names.contains(&member.name) {
+        params::note_use(cx, &member.name, member.name_span);
         return true;
     }
     let message = format!("the scene has no parameter `{}`", member.name);

@@ -26,11 +26,13 @@ pub(super) fn call<'a>(
     match &callee.kind {
         ExprKind::Name(name) => {
             if let Some(function) = find_function(cx, scope.module, name) {
+                cx.note_use(callee.span, function.name.span);
                 return call_function(cx, scope, function, (arguments, span), slot);
             }
             if slot.kind == Some(Kind::Tone)
                 && let Some(tone) = tone::find(cx, scope.module, name)
             {
+                cx.note_use(callee.span, tone.name.span);
                 return tone::instantiate(cx, scope, tone, arguments, span);
             }
             if let Some(signature) = vocabulary::find(name, slot, arguments) {
@@ -49,9 +51,11 @@ pub(super) fn call<'a>(
             };
             let modules = cx.modules;
             if let Some(&function) = modules[module].functions.get(member.name.as_str()) {
+                cx.note_use(member.span, function.name.span);
                 return call_function(cx, scope, function, (arguments, span), slot);
             }
             if let Some(&tone) = modules[module].tones.get(member.name.as_str()) {
+                cx.note_use(member.span, tone.name.span);
                 return tone::instantiate(cx, scope, tone, arguments, span);
             }
             let message = format!("`{}` declares no `{}`", modules[module].path, member.name);
@@ -164,6 +168,7 @@ pub(super) fn unknown_arguments<'a>(cx: &mut Cx<'a, '_>, module: usize, params: 
 }
 
 fn declare_param<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, param: &'a ast::Parameter, value: Value) {
+    cx.note_value(param.name.span, &value);
     if let Some(earlier) = scope.declare(&param.name.name, Binding::Value(value), param.name.span) {
         cx.report(super::modules::declared_twice(&param.name, earlier));
     }
@@ -186,6 +191,11 @@ pub(super) fn bind_arguments<'a>(
     let mut whole = true;
     for argument in arguments.iter().zip(&places).filter(|(_, place)| place.is_none()).map(|(argument, _)| argument) {
         eval(cx, caller, &argument.value, Slot::of(Kind::Field));
+    }
+    for (argument, place) in arguments.iter().zip(&places) {
+        if let (Some(label), Some(place)) = (&argument.name, place) {
+            cx.note_use(label.span, params[*place].name.span);
+        }
     }
     for (i, param) in params.iter().enumerate() {
         let given = places.iter().position(|place| *place == Some(i)).map(|given| &arguments[given].value);

@@ -23,6 +23,11 @@ pub(super) fn text(path: &str) -> Option<&'static str> {
     LIBRARIES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
 
+/// The path of every library with its text.
+pub(super) fn all() -> impl Iterator<Item = (String, &'static str)> {
+    LIBRARIES.into_iter().map(|(name, text)| (format!("{PREFIX}{name}"), text))
+}
+
 /// Says that there is no library of a path.
 pub(super) fn unknown(path: &str, span: Span) -> Diagnostic {
     let names = LIBRARIES.map(|(name, _)| format!("{PREFIX}{name}"));

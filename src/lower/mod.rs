@@ -22,8 +22,10 @@ mod modules;
 mod names;
 mod ops;
 mod params;
+pub mod reference;
 mod repeat;
 mod scope;
+mod survey;
 mod tone;
 mod value;
 mod vocabulary;
@@ -38,6 +40,7 @@ use crate::span::{Sources, Span};
 use crate::syntax::ast::StatementKind;
 
 pub use params::schema;
+pub use survey::{Survey, Worth};
 
 use cx::Cx;
 
@@ -74,16 +77,27 @@ pub struct Lowered {
 /// Every independent mistake is reported; the scene is there only if none of them is an error.
 #[must_use]
 pub fn lower(path: &str, loader: &dyn Loader, config: &LowerConfig) -> Lowered {
+    on_a_deep_stack(|| lower_here(path, loader, config, None).0)
+}
+
+/// Lowers the scene at `path` and says what its names mean, as far as that could be found out.
+#[must_use]
+pub fn survey(path: &str, loader: &dyn Loader, config: &LowerConfig) -> (Lowered, Survey) {
+    on_a_deep_stack(|| lower_here(path, loader, config, Some(Box::default())))
+}
+
+/// Runs what evaluates with room for values that lead into each other.
+fn on_a_deep_stack<T: Send>(run: impl Fn() -> T + Sync) -> T {
     // Values lead into each other as deep as the limits allow, which the stack of a small thread has no room for.
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(STACK);
-        match thread.spawn_scoped(scope, || lower_here(path, loader, config)) {
+        match thread.spawn_scoped(scope, &run) {
             Ok(running) => match running.join() {
-                Ok(lowered) => lowered,
+                Ok(result) => result,
                 Err(panic) => std::panic::resume_unwind(panic),
             },
             // Where no thread can be had, the stack at hand has to do.
-            Err(_) => lower_here(path, loader, config),
+            Err(_) => run(),
         }
     })
 }
@@ -91,27 +105,38 @@ pub fn lower(path: &str, loader: &dyn Loader, config: &LowerConfig) -> Lowered {
 /// Bytes of stack for lowering; only what is used is taken from the machine.
 const STACK: usize = 256 << 20;
 
-fn lower_here(path: &str, loader: &dyn Loader, config: &LowerConfig) -> Lowered {
+fn lower_here(
+    path: &str,
+    loader: &dyn Loader,
+    config: &LowerConfig,
+    surveyed: Option<Box<Survey>>,
+) -> (Lowered, Survey) {
     let mut sources = Sources::new();
     let mut diagnostics = Vec::new();
     let files = modules::read(path, loader, &mut sources, &mut diagnostics);
     let sets: Vec<_> = params::parse_sets(config, &mut sources, &mut diagnostics);
     let modules = modules::declare(&files, &mut diagnostics);
-    let mut lowered = match modules.is_empty() {
-        true => Lowered { scene: None, diagnostics, sources, files: BTreeMap::new(), canvas_span: None },
+    let (mut lowered, surveyed) = match modules.is_empty() {
+        true => (Lowered { scene: None, diagnostics, sources, files: BTreeMap::new(), canvas_span: None }, None),
         false => {
             let mut cx = Cx::new(&modules, loader, config, diagnostics);
+            cx.survey = surveyed;
             let scene = scene(&mut cx, &sets);
+            let surveyed = cx.survey.take();
             let (diagnostics, files) = cx.finish();
             let canvas_span = files_canvas(&modules);
-            Lowered { scene, diagnostics, sources, files, canvas_span }
+            (Lowered { scene, diagnostics, sources, files, canvas_span }, surveyed)
         }
     };
+    if config.limits.stop.is_asked() {
+        lowered.diagnostics.push(Diagnostic::without_span(Code::Limit, "the reading of the scene was stopped"));
+    }
     diag::sort(&mut lowered.diagnostics);
     if lowered.diagnostics.iter().any(Diagnostic::is_error) {
         lowered.scene = None;
     }
-    lowered
+    let survey = surveyed.map(|survey| modules::surveyed(files, *survey)).unwrap_or_default();
+    (lowered, survey)
 }
 
 /// Where the first module declares its canvas.

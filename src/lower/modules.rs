@@ -12,6 +12,7 @@ use crate::syntax::{self, ast, kake};
 
 use super::cx::Cx;
 use super::scope::{Binding, Declared, Scope};
+use super::survey::Survey;
 use super::{draw, function, library, names, tone};
 
 /// How many files deep imports may go.
@@ -385,6 +386,19 @@ pub(super) fn declare_binding<'a>(statement: &'a StatementKind, scope: &Scope<'a
     };
     let name = &binding.name;
     scope.declare(&name.name, Binding::Lazy(binding, declared), name.span).map(|earlier| (name, earlier))
+}
+
+/// Adds the files and what they import to a survey.
+pub(super) fn surveyed(files: Vec<File>, mut survey: Survey) -> Survey {
+    for file in &files {
+        for &(statement, imported) in &file.imports {
+            if let StatementKind::Import { path, .. } = &file.document.statements[statement].kind {
+                survey.imports.insert(path.span, files[imported].document.source);
+            }
+        }
+    }
+    survey.documents = files.into_iter().map(|file| file.document).collect();
+    survey
 }
 
 /// Says that a name is declared twice.

@@ -19,13 +19,17 @@ pub(super) fn name<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, s
     let tone = if slot.kind == Some(Kind::Tone) { tone::find(cx, scope.module, name) } else { None };
     match (lookup(cx, scope, name, span), tone) {
         (Some(value @ (Value::Tone(_) | Value::Unknown(_))), _) | (Some(value), None) => return value,
-        (_, Some(tone)) => return tone::instantiate(cx, scope, tone, &[], span),
+        (_, Some(tone)) => {
+            cx.note_use(span, tone.name.span);
+            return tone::instantiate(cx, scope, tone, &[], span);
+        }
         (None, None) => {}
     }
     if let Some(word) = slot.words.iter().find(|word| **word == convert::spelling(name)) {
         return Value::Word(word);
     }
     if let Some(value) = vocabulary::name(cx, name, span, slot) {
+        cx.note_colour(span, &value);
         return value;
     }
     if cx.modules[scope.module].broken.contains(name) {
@@ -88,14 +92,17 @@ pub(super) fn visible<'a>(cx: &Cx<'a, '_>, scope: &Rc<Scope<'a>>) -> Vec<&'a str
 pub(super) fn lookup<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, span: Span) -> Option<Value> {
     let mut next = Some(scope);
     while let Some(scope) = next {
-        if scope.own(name).is_some() {
+        if let Some(entry) = scope.own(name) {
+            cx.note_use(span, entry.span);
             return Some(force(cx, scope, name, span));
         }
         next = scope.parent();
     }
     let modules = cx.modules;
-    let opened = modules[scope.module].opened.iter().find(|&&opened| modules[opened].scope.own(name).is_some());
-    opened.map(|&opened| force(cx, &modules[opened].scope, name, span))
+    let mut opened = modules[scope.module].opened.iter();
+    let (module, entry) = opened.find_map(|&opened| Some((opened, modules[opened].scope.own(name)?)))?;
+    cx.note_use(span, entry.span);
+    Some(force(cx, &modules[module].scope, name, span))
 }
 
 /// The value of a name that a scope declares, found now if it was not asked for before. `span` is where it is asked for.
@@ -120,6 +127,7 @@ pub(super) fn force<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, name: &str, 
                 .declared(span, scope.parent().is_none(), |cx| bind(cx, scope, binding, declared))
                 .unwrap_or(Value::UNKNOWN);
             scope.set(name, Binding::Value(value.clone()));
+            cx.note_value(entry.span, &value);
             value
         }
     }
@@ -169,7 +177,8 @@ pub(super) fn member<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, base: &'a E
     let Some(module) = module_of(cx, scope, base) else { return Value::UNKNOWN };
     let modules = cx.modules;
     let inner = &modules[module].scope;
-    if inner.own(&member.name).is_some() {
+    if let Some(entry) = inner.own(&member.name) {
+        cx.note_use(member.span, entry.span);
         return force(cx, inner, &member.name, member.span);
     }
     let message = format!("`{}` declares no `{}`", modules[module].path, member.name);
@@ -193,6 +202,9 @@ pub(super) fn module_of<'a>(cx: &mut Cx<'a, '_>, scope: &Rc<Scope<'a>>, base: &'
     };
     let module = &cx.modules[scope.module];
     let found = module.aliases.get(name.as_str()).copied();
+    if found.is_some() {
+        cx.note_module(base.span, module, name);
+    }
     if found.is_none() && visible(cx, scope).contains(&name.as_str()) {
         let message = format!("`{name}` is a value, and only modules have members");
         cx.report(Diagnostic::error(Code::Type, base.span, message));

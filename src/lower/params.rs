@@ -259,6 +259,18 @@ pub(super) fn level<'a>(
     }
 }
 
+/// Tells that a parameter is named.
+pub(super) fn note_use(cx: &mut Cx<'_, '_>, name: &str, span: Span) {
+    if cx.survey.is_none() {
+        return;
+    }
+    if let Some((module, _, short)) = settable(cx).into_iter().find(|(_, full, _)| full == name)
+        && let Some(entry) = cx.modules[module].scope.own(&short)
+    {
+        cx.note_use(span, entry.span);
+    }
+}
+
 /// The names of the parameters that can be set.
 pub(super) fn names(cx: &Cx<'_, '_>) -> Vec<String> {
     settable(cx).into_iter().map(|(_, full, _)| full).collect()

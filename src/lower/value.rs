@@ -92,26 +92,46 @@ impl FieldUnit {
 
 /// The kinds of value, as they are named in `name: type`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub enum Kind {
+    /// A plain number.
     Number,
+    /// A length.
     Length,
+    /// An angle.
     Angle,
+    /// A share of one.
     Percentage,
+    /// A colour.
     Colour,
+    /// A text.
     String,
+    /// A pair of lengths.
     Point,
+    /// A place and a size.
     Box,
+    /// Values in order.
     List,
+    /// From one value to another.
     Range,
+    /// Named values.
     Record,
+    /// True or false.
     Bool,
+    /// A part of the page.
     Region,
+    /// A value at every point.
     Field,
+    /// Where tiles lie.
     Placement,
+    /// What tiles look like.
     Shape,
+    /// How tiles are turned.
     Angles,
+    /// What is drawn in tiles.
     Fill,
+    /// How unevenly strokes are drawn.
     Hand,
+    /// A recipe for tiles.
     Tone,
     /// Not a type that can be named: what `ink` takes.
     Drawing,
@@ -121,7 +141,7 @@ pub(super) enum Kind {
 
 impl Kind {
     /// The kinds that have a name.
-    pub(super) const NAMED: [Self; 20] = [
+    pub const NAMED: [Self; 20] = [
         Self::Number,
         Self::Length,
         Self::Angle,
@@ -144,7 +164,9 @@ impl Kind {
         Self::Tone,
     ];
 
-    pub(super) fn name(self) -> &'static str {
+    /// Its name in the language.
+    #[must_use]
+    pub fn name(self) -> &'static str {
         match self {
             Self::Number => "number",
             Self::Length => "length",
@@ -171,12 +193,15 @@ impl Kind {
         }
     }
 
-    pub(super) fn from_name(name: &str) -> Option<Self> {
+    /// The kind of a name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
         Self::NAMED.into_iter().find(|kind| kind.name() == name)
     }
 
     /// With its article.
-    pub(super) fn noun(self) -> &'static str {
+    #[must_use]
+    pub fn noun(self) -> &'static str {
         match self {
             Self::Number => "a number",
             Self::Length => "a length",

@@ -19,9 +19,11 @@ mod structure;
 mod tests;
 
 use crate::diag::{self, Diagnostic};
-use crate::span::{SourceId, Span};
+use crate::span::{SourceId, Sources, Span, Syntax};
 use crate::syntax::ast::{Document, Expr, Parameter};
 use unicode_normalization::is_nfc;
+
+pub use scan::{Kind as TokenKind, Token};
 
 /// The words that begin a statement. Elsewhere they are words like any other.
 pub const KEYWORDS: &[&str] = &[
@@ -110,6 +112,16 @@ pub fn parse_parameters(
     let parameters = reader.parameters();
     let (_, diagnostics) = reader.finish();
     (parameters, diagnostics)
+}
+
+/// The words and signs of a text as far as it makes sense, and where its comments stand: for what colours or completes
+/// a text that is being written.
+#[must_use]
+pub fn tokens(text: &str) -> (Vec<Token>, Vec<std::ops::Range<usize>>) {
+    let source = Sources::new().add("", "", Syntax::Kake);
+    let places = Places { source, place: &|offset| offset };
+    let scanned = scan::Scanner::scan(text, &places);
+    (scanned.tokens, scanned.remarks.ranges())
 }
 
 /// Whether something can be declared under this name: an identifier in normal form C that is no reserved word.

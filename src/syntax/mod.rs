@@ -3,6 +3,7 @@
 #[cfg(test)]
 mod arbitrary;
 pub mod ast;
+pub mod edit;
 pub mod format;
 pub mod kake;
 pub mod toml;

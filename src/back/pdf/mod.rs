@@ -16,8 +16,9 @@ use self::content::{Cut, Streams, set_ink};
 use super::metadata::Metadata;
 use super::pieces;
 use crate::drawing::{Drawing, Layer, Page};
-use crate::geom::Length;
+use crate::geom::{Length, Point};
 use crate::scene::Colour;
+use crate::sheet::Sheet;
 
 /// Points in a millimetre.
 const PER_MM: f64 = 72.0 / Length::MM_PER_INCH;
@@ -34,6 +35,18 @@ pub fn write(drawing: &Drawing, metadata: Option<&Metadata>, out: &mut dyn Write
     let mut document = Document::new(&drawing.page);
     let content = document.content(drawing)?;
     out.write_all(&document.finish(content, metadata)?)?;
+    out.flush()
+}
+
+/// Writes a contact sheet with its pictures, one for each place: those that are missing stay white. What is written on it
+/// is filled outlines. Pictures are forms, which show no more than their own page.
+///
+/// # Errors
+/// What `out` answers.
+pub fn write_sheet(sheet: &Sheet, pictures: &[Option<Drawing>], out: &mut dyn Write) -> io::Result<()> {
+    let mut document = Document::new(&sheet.page);
+    let content = document.sheet(sheet, pictures)?;
+    out.write_all(&document.finish(content, None)?)?;
     out.flush()
 }
 
@@ -117,6 +130,76 @@ impl<'a> Document<'a> {
         Ok(streams.finish()?.into_iter().map(add).collect())
     }
 
+    /// A sheet's drawing as compressed streams.
+    fn sheet(&mut self, sheet: &Sheet, pictures: &[Option<Drawing>]) -> io::Result<Vec<Ref>> {
+        let mut streams = Streams::new(Cut::Anywhere);
+        streams.push(&self.start());
+        if let Some(paper) = self.page.paper {
+            streams.push(&self.paper(paper));
+        }
+        for (place, picture) in sheet.places.iter().zip(pictures) {
+            let Some(picture) = picture else { continue };
+            let scale = place.area.width() / picture.page.width.to_mm();
+            let [x, y] = [place.area.min.x, place.area.min.y].map(super::number::text);
+            streams.push(&format!("q {scale:.6} 0 0 {scale:.6} {x} {y} cm\n"));
+            self.form(picture, &mut streams)?;
+            streams.push("Q\n");
+        }
+        for layer in std::iter::once(sheet.frame_layer()).chain(sheet.text_layers()) {
+            streams.push(&set_ink(layer.ink));
+            streams.layer(&layer, 1)?;
+        }
+        let add = |stream: Vec<u8>| {
+            let id = self.next.bump();
+            self.pdf.stream(id, &stream).filter(Filter::FlateDecode);
+            id
+        };
+        Ok(streams.finish()?.into_iter().map(add).collect())
+    }
+
+    /// Draws a whole picture as a form of the page.
+    fn form(&mut self, picture: &Drawing, page: &mut Streams) -> io::Result<()> {
+        let mut streams = Streams::new(Cut::Nowhere);
+        // A line width is no part of what a form begins with; joins are.
+        streams.push("1 j\n");
+        let [width, height] = [picture.page.width, picture.page.height].map(Length::to_mm);
+        // Translucent layers are forms of their own, and lie on the page: a form has no resources here.
+        let paper = picture.page.paper.map(|paper| Layer {
+            areas: vec![vec![rectangle(width, height)]],
+            ..Layer::new(Vec::new(), String::new(), paper)
+        });
+        let together = pieces::together(picture);
+        let bounds = Rect::new(0.0, 0.0, width as f32, height as f32);
+        for layer in paper.iter().chain(&picture.layers).filter(|layer| layer.marks() > 0) {
+            if layer.ink.a == 255 {
+                streams.push(&set_ink(layer.ink));
+                streams.layer(layer, together)?;
+                continue;
+            }
+            let opaque = std::mem::replace(&mut streams, Streams::new(Cut::Nowhere));
+            self.use_form(opaque, bounds, page)?;
+            streams.push("1 j\n");
+            let mut translucent = Streams::new(Cut::Nowhere);
+            translucent.push("1 j\n");
+            translucent.push(&set_ink(layer.ink));
+            translucent.layer(layer, together)?;
+            page.push(&format!("q /A{} gs\n", self.alpha(layer.ink.a)));
+            self.use_form(translucent, bounds, page)?;
+            page.push("Q\n");
+        }
+        self.use_form(streams, bounds, page)
+    }
+
+    /// Makes a transparency group of content and draws it.
+    fn use_form(&mut self, content: Streams, bounds: Rect, page: &mut Streams) -> io::Result<()> {
+        let content = content.finish()?.concat();
+        let id = self.next.bump();
+        page.push(&format!("/F{} Do\n", self.resources.forms.len()));
+        self.resources.forms.push(id);
+        self.group(id, &content, bounds);
+        Ok(())
+    }
+
     /// Makes the page's units millimetres from the trimmed sheet's top left corner, downwards.
     fn start(&self) -> String {
         let scale = PER_MM / self.unit();
@@ -152,16 +235,21 @@ impl<'a> Document<'a> {
         streams.push(&set_ink(layer.ink));
         streams.layer(layer, together)?;
         page.push(&format!("q /A{} gs\n", self.alpha(layer.ink.a)));
+        let bounds = self.bounds();
         let content = streams.finish()?.concat();
         let group = self.next.bump();
         page.push(&format!("/F{} Do Q\n", self.resources.forms.len()));
         self.resources.forms.push(group);
-        let bounds = self.bounds();
-        let mut form = self.pdf.form_xobject(group, &content);
+        self.group(group, &content, bounds);
+        Ok(())
+    }
+
+    /// Writes a transparency group.
+    fn group(&mut self, id: Ref, content: &[u8], bounds: Rect) {
+        let mut form = self.pdf.form_xobject(id, content);
         form.bbox(bounds).filter(Filter::FlateDecode);
         form.group().transparency();
         form.resources();
-        Ok(())
     }
 
     /// The page with its bleed, in millimetres.
@@ -241,6 +329,11 @@ impl<'a> Document<'a> {
             }
         }
     }
+}
+
+/// The outline of a page of so many millimetres.
+fn rectangle(width: f64, height: f64) -> Vec<Point> {
+    crate::geom::Rect::new(Point::new(0.0, 0.0), Point::new(width, height)).corners().to_vec()
 }
 
 /// Lists entries as a reader shows them: what lies in a group is a list after it.

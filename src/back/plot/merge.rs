@@ -4,7 +4,7 @@
 //! of an end. Of pairs equally near the ones drawn first count as nearer.
 
 use super::path::Path;
-use super::tree::Tree;
+use crate::geom::tree::Tree;
 use crate::geom::{Length, Point};
 
 /// How many ends near an end are looked at.

@@ -8,7 +8,6 @@ mod hatch;
 mod merge;
 mod order;
 mod path;
-mod tree;
 
 use std::collections::BTreeMap;
 

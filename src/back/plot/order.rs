@@ -11,8 +11,8 @@ use std::collections::VecDeque;
 use rayon::prelude::*;
 
 use super::path::Path;
-use super::tree::Tree;
 use crate::geom::Point;
+use crate::geom::tree::Tree;
 
 /// How many ends near an end are tried.
 const NEIGHBOURS: usize = 8;

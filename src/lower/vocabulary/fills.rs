@@ -13,15 +13,20 @@ use super::super::value::{Kind, Value};
 use super::regions::path_error;
 
 const LENGTH: Slot = Slot::of(Kind::Length);
-const PITCH: Param = required("pitch", LENGTH);
-const PEN: Param = optional("pen", LENGTH);
-const INK: Param = optional("ink", Slot::of(Kind::Colour));
-const INSET: Param = optional("inset", Slot::of(Kind::Number));
-const SHORTEST: Param = optional("shortest", LENGTH);
-const CAP: Param = optional("cap", Slot::words(&["butt", "round"]));
-const SPACING: Param = optional("spacing", LENGTH);
-const WAVELENGTH: Param = optional("wavelength", LENGTH);
-const AMPLITUDE: Param = optional("amplitude", LENGTH);
+const PITCH: Param = required("pitch", LENGTH, "from line to line, above 0");
+const PEN: Param = optional("pen", LENGTH, "0.2mm", "width of a stroke, above 0");
+const INK: Param = optional("ink", Slot::of(Kind::Colour), "the layer's", "colour of the marks");
+const INSET: Param = optional(
+    "inset",
+    Slot::of(Kind::Number),
+    "0.5",
+    "where the outermost lines of a stamp lie, in steps from its edge",
+);
+const SHORTEST: Param = optional("shortest", LENGTH, "two pens", "pieces of strokes below it are dropped");
+const CAP: Param = optional("cap", Slot::words(&["butt", "round"]), "butt", "how strokes end");
+const SPACING: Param = optional("spacing", LENGTH, "the pitch", "from mark to mark along a line, above 0");
+const WAVELENGTH: Param = optional("wavelength", LENGTH, "5 pitches", "length of a wave, above 0");
+const AMPLITUDE: Param = optional("amplitude", LENGTH, "0.6 pitches", "swing to either side, above 0");
 
 /// The width of a stroke where none is given: that of a fine nib.
 pub(in super::super) const DEFAULT_PEN: Length = Length::mm(0.2);
@@ -32,6 +37,7 @@ const FIGURE: f64 = 1e-4;
 pub(super) const SIGNATURES: &[Signature] = &[
     Signature {
         name: "lines",
+        about: "Parallel strokes.",
         result: Some(Kind::Fill),
         params: &[PITCH, PEN, INSET, SHORTEST, CAP, INK],
         build: |call| {
@@ -41,8 +47,18 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "dashes",
+        about: "Strokes with gaps, set like bricks.",
         result: Some(Kind::Fill),
-        params: &[PITCH, PEN, required("dash", LENGTH), optional("gap", LENGTH), INSET, SHORTEST, CAP, INK],
+        params: &[
+            PITCH,
+            PEN,
+            required("dash", LENGTH, "length of a dash, above 0"),
+            optional("gap", LENGTH, "the dash", "from dash to dash, above 0"),
+            INSET,
+            SHORTEST,
+            CAP,
+            INK,
+        ],
         build: |call| {
             let hatch = hatch(call, DEFAULT_PEN);
             let dash = call.positive("dash", None);
@@ -52,8 +68,16 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "dots",
+        about: "Dots along the lines of a hatch.",
         result: Some(Kind::Fill),
-        params: &[PITCH, SPACING, optional("radius", LENGTH), PEN, INSET, INK],
+        params: &[
+            PITCH,
+            SPACING,
+            optional("radius", LENGTH, "half the pen", "radius of a dot, above 0"),
+            PEN,
+            INSET,
+            INK,
+        ],
         build: |call| {
             // A dot without a radius is the touch of the pen.
             let pen = if call.has("radius") { DEFAULT_PEN } else { call.positive("pen", Some(DEFAULT_PEN))? };
@@ -66,8 +90,18 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "crosses",
+        about: "Crosses along the lines of a hatch.",
         result: Some(Kind::Fill),
-        params: &[PITCH, PEN, SPACING, optional("size", LENGTH), INSET, SHORTEST, CAP, INK],
+        params: &[
+            PITCH,
+            PEN,
+            SPACING,
+            optional("size", LENGTH, "2/3 of pitch or spacing", "length of an arm from tip to tip, above 0"),
+            INSET,
+            SHORTEST,
+            CAP,
+            INK,
+        ],
         build: |call| {
             let hatch = hatch(call, DEFAULT_PEN);
             let pitch = hatch.map_or(DEFAULT_PEN, |hatch| hatch.pitch);
@@ -79,6 +113,7 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "arcs",
+        about: "Arcs about a place on the tile's edge, like scales.",
         result: Some(Kind::Fill),
         params: &[PITCH, PEN, INSET, SHORTEST, CAP, INK],
         build: |call| {
@@ -88,6 +123,7 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "waves",
+        about: "Sine waves about the lines of a hatch.",
         result: Some(Kind::Fill),
         params: &[PITCH, PEN, WAVELENGTH, AMPLITUDE, INSET, SHORTEST, CAP, INK],
         build: |call| {
@@ -98,8 +134,18 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "scribble",
+        about: "Rows of loops, as a loose hand draws them.",
         result: Some(Kind::Fill),
-        params: &[PITCH, PEN, optional("loop", LENGTH), SPACING, INSET, SHORTEST, CAP, INK],
+        params: &[
+            PITCH,
+            PEN,
+            optional("loop", LENGTH, "1.25 pitches", "height of the loops, above 0"),
+            optional("spacing", LENGTH, "0.9 loops", "from loop to loop along a line, above 0"),
+            INSET,
+            SHORTEST,
+            CAP,
+            INK,
+        ],
         build: |call| {
             let hatch = hatch(call, DEFAULT_PEN);
             let pitch = hatch.map_or(DEFAULT_PEN, |hatch| hatch.pitch);
@@ -111,8 +157,18 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "nawaami",
+        about: "Strands of rope: strokes that swing together and draw together as the tile does.",
         result: Some(Kind::Fill),
-        params: &[PITCH, PEN, WAVELENGTH, AMPLITUDE, INSET, SHORTEST, CAP, INK],
+        params: &[
+            PITCH,
+            PEN,
+            optional("wavelength", LENGTH, "16 pitches", "length of a wave, above 0"),
+            optional("amplitude", LENGTH, "0.8 pitches", "swing to either side, above 0"),
+            INSET,
+            SHORTEST,
+            CAP,
+            INK,
+        ],
         build: |call| {
             let hatch = hatch(call, DEFAULT_PEN);
             let swing = swing(call, hatch, 16.0, 0.8);
@@ -121,12 +177,13 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "motif",
+        about: "A figure along the lines, drawn by SVG path data.",
         result: Some(Kind::Fill),
         params: &[
-            required("data", Slot::of(Kind::String)),
-            required("size", LENGTH),
-            SPACING,
-            optional("pitch", LENGTH),
+            required("data", Slot::of(Kind::String), "SVG path data; its x runs along the lines"),
+            required("size", LENGTH, "longer side of the figure's box, above 0"),
+            optional("spacing", LENGTH, "1.25 sizes", "from figure to figure along a line, above 0"),
+            optional("pitch", LENGTH, "the spacing", "from row to row, above 0"),
             PEN,
             INSET,
             SHORTEST,
@@ -144,6 +201,7 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "solid",
+        about: "The whole tile, inked all over.",
         result: Some(Kind::Fill),
         params: &[INK, PEN],
         build: |call| {

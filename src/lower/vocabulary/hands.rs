@@ -31,14 +31,15 @@ const MOST_MM: f64 = 100.0;
 
 pub(super) const SIGNATURES: &[Signature] = &[Signature {
     name: "hand",
+    about: "How unevenly strokes are drawn; `hand()` is the hand of a professional, and what is not given is 0.",
     result: Some(Kind::Hand),
     params: &[
-        optional("angle", ANGLE),
-        optional("spacing", SHARE),
-        optional("pen", SHARE),
-        optional("taper", SHARE),
-        optional("overshoot", LENGTH),
-        optional("wobble", LENGTH),
+        optional("angle", ANGLE, "0deg", "bundles are turned by up to this, 0 to 45deg"),
+        optional("spacing", SHARE, "0%", "lines lie off by up to this share of a step, 0 to 50%"),
+        optional("pen", SHARE, "0%", "strokes are thinner or wider by up to this share, 0 to 90%"),
+        optional("taper", SHARE, "0%", "strokes run out over up to this share of their length, 0 to 100%"),
+        optional("overshoot", LENGTH, "0mm", "strokes end beyond the tile's edge by up to this, at most 100mm"),
+        optional("wobble", LENGTH, "0mm", "strokes wander to either side by up to this, at most 100mm"),
     ],
     build: |call| {
         if call.signature.params.iter().all(|param| !call.has(param.name)) {

@@ -10,50 +10,128 @@ use crate::diag::{Code, Diagnostic};
 
 const ANY: Slot = Slot::ANY;
 /// Operands of functions may be fields, and so may use `x` and `y`.
-const A: &[super::super::call::Param] = &[required("a", ANY)];
-const AB: &[super::super::call::Param] = &[required("a", ANY), required("b", ANY)];
+const A: &[super::super::call::Param] = &[required("a", ANY, "a value, or a field of values")];
+const AB: &[super::super::call::Param] =
+    &[required("a", ANY, "a value, or a field of values"), required("b", ANY, "another of the same unit")];
 
 /// A function that takes and yields plain numbers.
 macro_rules! plain {
-    ($name:literal, $function:expr) => {
-        Signature { name: $name, result: None, params: A, build: |call| one(call, $function, Takes::Number) }
+    ($name:literal, $about:literal, $function:expr) => {
+        Signature {
+            name: $name,
+            about: $about,
+            result: None,
+            params: A,
+            build: |call| one(call, $function, Takes::Number),
+        }
     };
 }
 
 pub(super) const SIGNATURES: &[Signature] = &[
-    Signature { name: "sin", result: None, params: A, build: |call| one(call, Function::Sin, Takes::Angle) },
-    Signature { name: "cos", result: None, params: A, build: |call| one(call, Function::Cos, Takes::Angle) },
-    Signature { name: "tan", result: None, params: A, build: |call| one(call, Function::Tan, Takes::Angle) },
-    Signature { name: "asin", result: None, params: A, build: |call| one(call, Function::Asin, Takes::ToAngle) },
-    Signature { name: "acos", result: None, params: A, build: |call| one(call, Function::Acos, Takes::ToAngle) },
-    Signature { name: "atan", result: None, params: A, build: |call| one(call, Function::Atan, Takes::ToAngle) },
-    Signature { name: "abs", result: None, params: A, build: |call| one(call, Function::Abs, Takes::Any) },
-    plain!("sqrt", Function::Sqrt),
-    plain!("exp", Function::Exp),
-    plain!("ln", Function::Ln),
-    plain!("floor", Function::Floor),
-    plain!("ceil", Function::Ceil),
-    plain!("round", Function::Round),
-    plain!("sign", Function::Sign),
-    Signature { name: "atan2", result: None, params: &[required("y", ANY), required("x", ANY)], build: atan2 },
-    Signature { name: "min", result: None, params: AB, build: |call| two(call, Operator::Min) },
-    Signature { name: "max", result: None, params: AB, build: |call| two(call, Operator::Max) },
+    Signature {
+        name: "sin",
+        about: "The sine of an angle, or of a number of radians.",
+        result: None,
+        params: A,
+        build: |call| one(call, Function::Sin, Takes::Angle),
+    },
+    Signature {
+        name: "cos",
+        about: "The cosine of an angle, or of a number of radians.",
+        result: None,
+        params: A,
+        build: |call| one(call, Function::Cos, Takes::Angle),
+    },
+    Signature {
+        name: "tan",
+        about: "The tangent of an angle, or of a number of radians.",
+        result: None,
+        params: A,
+        build: |call| one(call, Function::Tan, Takes::Angle),
+    },
+    Signature {
+        name: "asin",
+        about: "The angle whose sine this is.",
+        result: None,
+        params: A,
+        build: |call| one(call, Function::Asin, Takes::ToAngle),
+    },
+    Signature {
+        name: "acos",
+        about: "The angle whose cosine this is.",
+        result: None,
+        params: A,
+        build: |call| one(call, Function::Acos, Takes::ToAngle),
+    },
+    Signature {
+        name: "atan",
+        about: "The angle whose tangent this is.",
+        result: None,
+        params: A,
+        build: |call| one(call, Function::Atan, Takes::ToAngle),
+    },
+    Signature {
+        name: "abs",
+        about: "The size of a number, length or angle, without its sign.",
+        result: None,
+        params: A,
+        build: |call| one(call, Function::Abs, Takes::Any),
+    },
+    plain!("sqrt", "The square root of a number.", Function::Sqrt),
+    plain!("exp", "e to the power of a number.", Function::Exp),
+    plain!("ln", "The natural logarithm of a number.", Function::Ln),
+    plain!("floor", "The greatest whole number that is not above.", Function::Floor),
+    plain!("ceil", "The least whole number that is not below.", Function::Ceil),
+    plain!("round", "The nearest whole number; halves go up.", Function::Round),
+    plain!("sign", "-1, 0 or 1.", Function::Sign),
+    Signature {
+        name: "atan2",
+        about: "The angle of the way (x, y).",
+        result: None,
+        params: &[required("y", ANY, "the way down"), required("x", ANY, "the way across, of the same unit")],
+        build: atan2,
+    },
+    Signature {
+        name: "min",
+        about: "The lesser of two values of one unit.",
+        result: None,
+        params: AB,
+        build: |call| two(call, Operator::Min),
+    },
+    Signature {
+        name: "max",
+        about: "The greater of two values of one unit.",
+        result: None,
+        params: AB,
+        build: |call| two(call, Operator::Max),
+    },
     Signature {
         name: "clamp",
+        about: "A value held between two others.",
         result: None,
-        params: &[required("value", ANY), required("low", ANY), required("high", ANY)],
+        params: &[
+            required("value", ANY, "the value"),
+            required("low", ANY, "the lower bound"),
+            required("high", ANY, "the upper bound"),
+        ],
         build: clamp,
     },
     Signature {
         name: "mix",
+        about: "`a + (b - a) * share`.",
         result: None,
-        params: &[required("a", ANY), required("b", ANY), required("share", ANY)],
+        params: &[
+            required("a", ANY, "a value, or a field of values"),
+            required("b", ANY, "another of the same unit"),
+            required("share", ANY, "0 for `a`, 1 for `b`"),
+        ],
         build: mix,
     },
     Signature {
         name: "step",
+        about: "0 below the edge, 1 from there on.",
         result: None,
-        params: &[required("edge", ANY), required("value", ANY)],
+        params: &[required("edge", ANY, "from where on it is 1"), required("value", ANY, "the value")],
         build: |call| {
             let (edge, value, _) = pair(call, "edge", "value")?;
             Some(ops::combine(edge, value, Operator::LessEqual, FieldUnit::Number).value())
@@ -61,14 +139,20 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "smoothstep",
+        about: "From 0 at `low` to 1 at `high`, smoothly.",
         result: None,
-        params: &[required("low", ANY), required("high", ANY), required("value", ANY)],
+        params: &[
+            required("low", ANY, "the lower bound"),
+            required("high", ANY, "the upper bound"),
+            required("value", ANY, "the value"),
+        ],
         build: smoothstep,
     },
     Signature {
         name: "len",
+        about: "How many members a list has.",
         result: Some(Kind::Number),
-        params: &[required("list", Slot::of(Kind::List))],
+        params: &[required("list", Slot::of(Kind::List), "the list")],
         build: |call| match call.value("list")? {
             Value::List(members) => Some(Value::Number(members.len() as f64)),
             _ => None,

@@ -38,8 +38,13 @@ const TABLES: [(Option<Kind>, &[Signature]); 9] = [
 
 /// The signature of a name where it is called. Of names with two meanings the place decides, then the arguments.
 pub(super) fn find(name: &str, slot: Slot, arguments: &[Argument]) -> Option<&'static Signature> {
-    // `rect` with `at` is a region, otherwise a stamp.
     let placed = arguments.iter().any(|a| a.name.as_ref().is_some_and(|name| name.name == "at"));
+    find_named(name, slot, placed)
+}
+
+/// The same where it is only known whether an argument `at` is given.
+pub(super) fn find_named(name: &str, slot: Slot, placed: bool) -> Option<&'static Signature> {
+    // `rect` with `at` is a region, otherwise a stamp.
     let wanted = if name == "rect" && placed { Some(Kind::Region) } else { slot.kind };
     let in_table = |(_, table): &(Option<Kind>, &'static [Signature])| table.iter().find(|s| s.name == name);
     let fitting = TABLES.iter().filter(|(kind, _)| kind.is_some() && *kind == wanted).find_map(in_table);
@@ -48,9 +53,29 @@ pub(super) fn find(name: &str, slot: Slot, arguments: &[Argument]) -> Option<&'s
     fitting.or_else(others)
 }
 
+/// Every signature.
+pub(super) fn all() -> impl Iterator<Item = &'static Signature> {
+    TABLES.into_iter().flat_map(|(_, table)| table)
+}
+
+/// What may be called in a slot: what gives its kind, then mathematics where it may yield that.
+pub(super) fn offered(slot: Slot) -> Vec<&'static Signature> {
+    let yields = |kind: Option<Kind>| match (kind, slot.kind) {
+        (Some(_), None) => kind != Some(Kind::Drawing),
+        (Some(_), _) => kind == slot.kind,
+        (None, wanted) => {
+            matches!(
+                wanted,
+                None | Some(Kind::Number | Kind::Length | Kind::Angle | Kind::Percentage | Kind::Field | Kind::Point)
+            )
+        }
+    };
+    TABLES.iter().filter(|(kind, _)| yields(*kind)).flat_map(|(_, table)| table.iter()).collect()
+}
+
 /// Every name that can be called.
 pub(super) fn callables() -> impl Iterator<Item = &'static str> {
-    TABLES.into_iter().flat_map(|(_, table)| table.iter().map(|signature| signature.name))
+    all().map(|signature| signature.name)
 }
 
 /// The names that can be called where values of one kind of the scene's own are asked for.

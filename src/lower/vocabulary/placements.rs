@@ -35,26 +35,41 @@ const DEFAULT_ROUNDS: u32 = 5;
 pub(super) const SIGNATURES: &[Signature] = &[
     Signature {
         name: "poisson",
+        about: "Poisson-disk sampling: evenly random sites, no two closer than the radius.",
         result: Some(Kind::Placement),
-        params: &[required("radius", LENGTH), optional("tries", NUMBER), optional("density", FIELD)],
+        params: &[
+            required("radius", LENGTH, "least distance of two sites, above 0"),
+            optional("tries", NUMBER, "30", "candidates for every site, 1 to 10,000"),
+            optional("density", FIELD, "1", "from 0 to 1: where it is d the radius is `radius / sqrt(d)`"),
+        ],
         build: poisson,
     },
     Signature {
         name: "uniform",
+        about: "Independent random sites: a count, as many as another placement finds, or a density.",
         result: Some(Kind::Placement),
-        params: &[optional("count", Slot::ANY), optional("density", FIELD)],
+        params: &[
+            optional("count", Slot::ANY, "from density", "how many sites, or a placement that finds as many"),
+            optional("density", FIELD, "even", "a weight, or without a count points per square canvas unit"),
+        ],
         build: uniform,
     },
     Signature {
         name: "grid",
+        about: "A square lattice: a spacing, or so many columns and rows over the region's box.",
         result: Some(Kind::Placement),
-        params: &[optional("spacing", LENGTH), optional("columns", NUMBER), optional("rows", NUMBER)],
+        params: &[
+            optional("spacing", LENGTH, "from columns and rows", "from site to site, above 0"),
+            optional("columns", NUMBER, "from spacing", "cells across the region's box, a whole number"),
+            optional("rows", NUMBER, "from spacing", "cells down the region's box, a whole number"),
+        ],
         build: grid,
     },
     Signature {
         name: "hex",
+        about: "Rows of sites, every other one moved by half a spacing.",
         result: Some(Kind::Placement),
-        params: &[required("spacing", LENGTH)],
+        params: &[required("spacing", LENGTH, "from site to site, above 0")],
         build: |call| {
             let spacing = call.positive("spacing", None)?;
             placement(Placement::Hex { spacing })
@@ -62,8 +77,9 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "triangles",
+        about: "Equilateral triangles in strips.",
         result: Some(Kind::Placement),
-        params: &[required("edge", LENGTH)],
+        params: &[required("edge", LENGTH, "length of a tile's edge, above 0")],
         build: |call| {
             let edge = call.positive("edge", None)?;
             placement(Placement::Triangles { edge })
@@ -71,8 +87,9 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "penrose",
+        about: "Penrose's thick and thin rhombs (P3).",
         result: Some(Kind::Placement),
-        params: &[required("edge", LENGTH)],
+        params: &[required("edge", LENGTH, "length of a tile's edge, above 0")],
         build: |call| {
             let edge = call.positive("edge", None)?;
             placement(Placement::Penrose { edge })
@@ -80,8 +97,9 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "pinwheel",
+        about: "The pinwheel tiling of Conway and Radin, with edges in ever more directions.",
         result: Some(Kind::Placement),
-        params: &[required("edge", LENGTH)],
+        params: &[required("edge", LENGTH, "shorter leg of a triangle, above 0")],
         build: |call| {
             let edge = call.positive("edge", None)?;
             placement(Placement::Pinwheel { edge })
@@ -89,8 +107,12 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "relaxed",
+        about: "The sites of another placement, moved towards the middles of their cells (Lloyd).",
         result: Some(Kind::Placement),
-        params: &[required("placement", Slot::of(Kind::Placement)), optional("rounds", NUMBER)],
+        params: &[
+            required("placement", Slot::of(Kind::Placement), "the placement whose sites are moved"),
+            optional("rounds", NUMBER, "5", "how often sites are moved, 0 to 1000"),
+        ],
         build: |call| {
             let rounds = call.whole("rounds", 0, MOST_ROUNDS, Some(DEFAULT_ROUNDS))?;
             let Some(Value::Placement(inner)) = call.value("placement") else { return None };
@@ -99,8 +121,9 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "points",
+        about: "Sites that are given, in their order.",
         result: Some(Kind::Placement),
-        params: &[required("at", Slot::of(Kind::List))],
+        params: &[required("at", Slot::of(Kind::List), "the sites, in their order")],
         build: points,
     },
 ];
@@ -108,8 +131,13 @@ pub(super) const SIGNATURES: &[Signature] = &[
 pub(super) const ANGLES: &[Signature] = &[
     Signature {
         name: "bfs",
+        about: "Breadth first: every tile takes the angle farthest from those of its placed neighbours.",
         result: Some(Kind::Angles),
-        params: &[optional("candidates", NUMBER), optional("see", SEE), optional("start", START)],
+        params: &[
+            optional("candidates", NUMBER, "360", "into how many steps half a turn is divided, 2 or more"),
+            optional("see", SEE, "primary", "what is looked at: the first layer of every tile, or all of them"),
+            optional("start", START, "first", "whether the first tile lies along x or anywhere"),
+        ],
         build: |call| {
             let candidates = call.whole("candidates", 2, MANY, Some(Bfs::default().candidates))?;
             angles(AngleRule::Bfs(Bfs { candidates, see: see(call), start: start(call) }))
@@ -117,45 +145,56 @@ pub(super) const ANGLES: &[Signature] = &[
     },
     Signature {
         name: "tuned",
+        about: "From `bfs` on by small moves to contrast, many directions and no repetition together.",
         result: Some(Kind::Angles),
         params: &[
-            optional("contrast", NUMBER),
-            optional("diversity", NUMBER),
-            optional("grain", NUMBER),
-            optional("rounds", NUMBER),
-            optional("least", NUMBER),
-            optional("candidates", NUMBER),
-            optional("see", SEE),
-            optional("start", START),
+            optional("contrast", NUMBER, "1", "weight of the contrast between neighbours, 0 to 100"),
+            optional("diversity", NUMBER, "1", "weight of using all directions evenly, 0 to 100"),
+            optional("grain", NUMBER, "1", "weight of angles not coming again two and three tiles away, 0 to 100"),
+            optional("rounds", NUMBER, "300", "how often every tile is looked at, 0 to 10,000"),
+            optional("least", NUMBER, "0.39", "contrast that no two neighbours should lie below, 0 to 1"),
+            optional("candidates", NUMBER, "360", "into how many steps half a turn is divided, 2 or more"),
+            optional("see", SEE, "primary", "what is looked at: the first layer of every tile, or all of them"),
+            optional("start", START, "first", "whether the first tile lies along x or anywhere"),
         ],
         build: tuned,
     },
     Signature {
         name: "coloured",
+        about: "A few directions, equal steps apart, no two neighbours alike.",
         result: Some(Kind::Angles),
-        params: &[optional("colours", NUMBER)],
+        params: &[optional("colours", NUMBER, "4", "how many directions, 2 to 12")],
         build: |call| {
             let colours = call.whole("colours", 2, AngleRule::MOST_COLOURS, Some(4))?;
             angles(AngleRule::Coloured { colours })
         },
     },
-    Signature { name: "random", result: Some(Kind::Angles), params: &[], build: |_| angles(AngleRule::Random) },
+    Signature {
+        name: "random",
+        about: "Angles that are independent and uniform.",
+        result: Some(Kind::Angles),
+        params: &[],
+        build: |_| angles(AngleRule::Random),
+    },
     Signature {
         name: "checkerboard",
+        about: "0 and 90 degrees by turns, on a `grid` only.",
         result: Some(Kind::Angles),
         params: &[],
         build: |_| angles(AngleRule::Checkerboard),
     },
     Signature {
         name: "fixed",
+        about: "All tiles at one angle.",
         result: Some(Kind::Angles),
-        params: &[required("angle", Slot::of(Kind::Angle))],
+        params: &[required("angle", Slot::of(Kind::Angle), "the angle, from +x towards +y")],
         build: |call| angles(AngleRule::Fixed(call.angle("angle")?)),
     },
     Signature {
         name: "along",
+        about: "The angle that a field has at the tile.",
         result: Some(Kind::Angles),
-        params: &[required("field", FIELD)],
+        params: &[required("field", FIELD, "a field of angles")],
         build: |call| match call.value("field")? {
             Value::Field(TypedField { field, unit: FieldUnit::Angle }) => angles(AngleRule::Along(field)),
             Value::Field(field) => {

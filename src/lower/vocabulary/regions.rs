@@ -20,6 +20,7 @@ const BORDER: Slot = Slot::words(&["open", "wall"]);
 /// What can be inked.
 pub(super) const DRAWINGS: &[Signature] = &[Signature {
     name: "svg",
+    about: "The strokes and fills of an SVG file, in their own widths and colours.",
     result: Some(Kind::Drawing),
     params: SVG,
     build: |call| Some(Value::Drawing(files::ink(call)?.into())),
@@ -27,19 +28,20 @@ pub(super) const DRAWINGS: &[Signature] = &[Signature {
 
 /// A file and the part of it that is meant.
 const SVG: &[Param] = &[
-    required("file", STRING),
-    optional("id", STRING),
-    optional("fit", BOX),
-    optional("layer", STRING),
-    optional("class", STRING),
-    optional("colour", COLOUR),
+    required("file", STRING, "path from the folder of this file"),
+    optional("id", STRING, "the whole file", "the element with this id"),
+    optional("fit", BOX, "the file's own place", "the box that the file's page is fitted into"),
+    optional("layer", STRING, "all layers", "only the Inkscape layer of this label"),
+    optional("class", STRING, "all classes", "only elements of this class"),
+    optional("colour", COLOUR, "all colours", "only what is filled with this colour"),
 ];
 
 pub(super) const SIGNATURES: &[Signature] = &[
     Signature {
         name: "rect",
+        about: "An upright rectangle.",
         result: Some(Kind::Region),
-        params: &[required("at", POINT), required("size", POINT)],
+        params: &[required("at", POINT, "the top left corner"), required("size", POINT, "width and height, above 0")],
         build: |call| {
             let at = call.point("at")?;
             let size = extent(call, "size")?;
@@ -48,8 +50,9 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "circle",
+        about: "A disc.",
         result: Some(Kind::Region),
-        params: &[required("center", POINT), required("radius", LENGTH)],
+        params: &[required("center", POINT, "the middle"), required("radius", LENGTH, "above 0")],
         build: |call| {
             let centre = call.point("center")?;
             let radius = call.positive("radius", None)?;
@@ -58,8 +61,12 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "ellipse",
+        about: "An upright ellipse.",
         result: Some(Kind::Region),
-        params: &[required("center", POINT), required("radius", POINT)],
+        params: &[
+            required("center", POINT, "the middle"),
+            required("radius", POINT, "half the width and half the height, above 0"),
+        ],
         build: |call| {
             let centre = call.point("center")?;
             let radius = extent(call, "radius")?;
@@ -68,43 +75,61 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "polygon",
+        about: "A polygon of at least three corners.",
         result: Some(Kind::Region),
-        params: &[required("corners", Slot::of(Kind::List))],
+        params: &[required("corners", Slot::of(Kind::List), "the corners in order, at least three")],
         build: polygon,
     },
-    Signature { name: "path", result: Some(Kind::Region), params: &[required("data", STRING)], build: path },
+    Signature {
+        name: "path",
+        about: "What SVG path data encloses, in canvas units.",
+        result: Some(Kind::Region),
+        params: &[required("data", STRING, "SVG path data: `M 0 0 L 10 0 L 10 10 Z`")],
+        build: path,
+    },
     Signature {
         name: "svg",
+        about: "Outlines of what an SVG file fills.",
         result: Some(Kind::Region),
         params: SVG,
         build: |call| not_empty(call, "the SVG file's filled shapes hold nothing", files::svg),
     },
     Signature {
         name: "flood",
+        about: "What a paint bucket would fill between the lines of an SVG file.",
         result: Some(Kind::Region),
         params: &[
-            required("file", STRING),
-            required("at", POINT),
-            optional("close", LENGTH),
-            optional("border", BORDER),
-            optional("fit", BOX),
-            optional("id", STRING),
-            optional("layer", STRING),
-            optional("class", STRING),
-            optional("colour", COLOUR),
+            required("file", STRING, "path from the folder of this file"),
+            required("at", POINT, "where the paint is poured"),
+            optional("close", LENGTH, "0.5mm", "gaps up to this are bridged, not negative"),
+            optional("border", BORDER, "open", "whether the page's border is a line"),
+            optional("fit", BOX, "the file's own place", "the box that the file's page is fitted into"),
+            optional("id", STRING, "the whole file", "only lines of the element with this id"),
+            optional("layer", STRING, "all layers", "only the Inkscape layer of this label"),
+            optional("class", STRING, "all classes", "only elements of this class"),
+            optional("colour", COLOUR, "all colours", "only what is filled with this colour"),
         ],
         build: |call| not_empty(call, "the flood fills nothing", files::flood),
     },
     Signature {
         name: "mask",
+        about: "The dark part of an image, traced.",
         result: Some(Kind::Region),
-        params: &[required("file", STRING), optional("threshold", Slot::of(Kind::Number)), optional("fit", BOX)],
+        params: &[
+            required("file", STRING, "path from the folder of this file"),
+            optional("threshold", Slot::of(Kind::Number), "0.5", "what is darker is inside, 0 to 1 in linear light"),
+            optional("fit", BOX, "the canvas", "the box that the image is fitted into"),
+        ],
         build: mask,
     },
     Signature {
         name: "inset",
+        about: "A region drawn in; a negative distance draws it out.",
         result: Some(Kind::Region),
-        params: &[required("region", REGION), required("distance", LENGTH)],
+        params: &[
+            required("region", REGION, "the region"),
+            required("distance", LENGTH, "how far, negative to draw it out"),
+        ],
         build: |call| {
             let distance = Length::mm(call.get("distance")?.value.as_length()?);
             let inset = match call.region("region")?.try_inset(distance) {
@@ -127,8 +152,9 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "translate",
+        about: "A region moved.",
         result: Some(Kind::Region),
-        params: &[required("region", REGION), required("by", POINT)],
+        params: &[required("region", REGION, "the region"), required("by", POINT, "the way, across and down")],
         build: |call| {
             let by = call.point("by")?;
             region(call.region("region")?.translated(Vec2::new(by.x, by.y)))
@@ -136,8 +162,13 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "rotate",
+        about: "A region turned clockwise.",
         result: Some(Kind::Region),
-        params: &[required("region", REGION), required("angle", Slot::of(Kind::Angle)), optional("about", POINT)],
+        params: &[
+            required("region", REGION, "the region"),
+            required("angle", Slot::of(Kind::Angle), "how far, clockwise on the page"),
+            optional("about", POINT, "its middle", "the point that stays"),
+        ],
         build: |call| {
             let base = call.region("region")?;
             let about = about(call, &base);
@@ -147,8 +178,13 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "scale",
+        about: "A region made larger or smaller.",
         result: Some(Kind::Region),
-        params: &[required("region", REGION), required("factor", Slot::of(Kind::Number)), optional("about", POINT)],
+        params: &[
+            required("region", REGION, "the region"),
+            required("factor", Slot::of(Kind::Number), "above 0"),
+            optional("about", POINT, "its middle", "the point that stays"),
+        ],
         build: |call| {
             let base = call.region("region")?;
             let about = about(call, &base);
@@ -161,8 +197,9 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "bounds",
+        about: "The box of a region.",
         result: Some(Kind::Region),
-        params: &[required("region", REGION)],
+        params: &[required("region", REGION, "the region")],
         build: |call| region(Region::rect(call.region("region")?.bounds())),
     },
 ];

@@ -23,20 +23,36 @@ const MOST_CORNERS: usize = 256;
 pub(super) const SIGNATURES: &[Signature] = &[
     Signature {
         name: "rect",
+        about: "Rectangular stamps, turned with their tiles: squares unless both sides are given.",
         result: Some(Kind::Shape),
         params: &[
-            optional("size", LENGTH),
-            optional("width", LENGTH),
-            optional("height", LENGTH),
-            optional("overlap", NUMBER),
-            optional("upright", BOOL),
+            optional("size", LENGTH, "the spacing", "how large the stamp is, above 0"),
+            optional("width", LENGTH, "the spacing", "side along the first layer's strokes, above 0"),
+            optional("height", LENGTH, "the width", "side across the first layer's strokes, above 0"),
+            optional(
+                "overlap",
+                NUMBER,
+                "1 or 1.6",
+                "scales the stamp, 0.1 to 10: 1 where a size is given and on lattices",
+            ),
+            optional("upright", BOOL, "false", "keep the stamp level while its strokes turn"),
         ],
         build: rect,
     },
     Signature {
         name: "hexagon",
+        about: "Hexagonal stamps, turned with their tiles.",
         result: Some(Kind::Shape),
-        params: &[optional("size", LENGTH), optional("overlap", NUMBER), optional("upright", BOOL)],
+        params: &[
+            optional("size", LENGTH, "the spacing", "how large the stamp is, above 0"),
+            optional(
+                "overlap",
+                NUMBER,
+                "1 or 1.6",
+                "scales the stamp, 0.1 to 10: 1 where a size is given and on lattices",
+            ),
+            optional("upright", BOOL, "false", "keep the stamp level while its strokes turn"),
+        ],
         build: |call| {
             let size = call.maybe_positive("size");
             let overlap = overlap(call);
@@ -45,8 +61,18 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "triangle",
+        about: "Equilateral stamps that stand on their side at angle 0.",
         result: Some(Kind::Shape),
-        params: &[optional("size", LENGTH), optional("overlap", NUMBER), optional("upright", BOOL)],
+        params: &[
+            optional("size", LENGTH, "the spacing", "how large the stamp is, above 0"),
+            optional(
+                "overlap",
+                NUMBER,
+                "1 or 1.6",
+                "scales the stamp, 0.1 to 10: 1 where a size is given and on lattices",
+            ),
+            optional("upright", BOOL, "false", "keep the stamp level while its strokes turn"),
+        ],
         build: |call| {
             let size = call.maybe_positive("size");
             let overlap = overlap(call);
@@ -55,12 +81,18 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "trapezoid",
+        about: "Stamps that narrow along the first layer's strokes.",
         result: Some(Kind::Shape),
         params: &[
-            optional("taper", NUMBER),
-            optional("size", LENGTH),
-            optional("overlap", NUMBER),
-            optional("upright", BOOL),
+            optional("taper", NUMBER, "0.5", "by what share the narrow end is shorter, 0 to 1"),
+            optional("size", LENGTH, "the spacing", "distance of the ends and their mean length, above 0"),
+            optional(
+                "overlap",
+                NUMBER,
+                "1 or 1.6",
+                "scales the stamp, 0.1 to 10: 1 where a size is given and on lattices",
+            ),
+            optional("upright", BOOL, "false", "keep the stamp level while its strokes turn"),
         ],
         build: |call| {
             let taper = call.within("taper", 0.0, 1.0, DEFAULT_TAPER);
@@ -72,12 +104,18 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "stamp",
+        about: "Stamps of any outline that does not cross itself.",
         result: Some(Kind::Shape),
         params: &[
-            required("points", Slot::of(Kind::List)),
-            optional("size", LENGTH),
-            optional("overlap", NUMBER),
-            optional("upright", BOOL),
+            required("points", Slot::of(Kind::List), "3 to 256 corners in canvas units, seen from the site"),
+            optional("size", LENGTH, "its own measures", "longer side of the stamp's box, above 0"),
+            optional(
+                "overlap",
+                NUMBER,
+                "1 or 1.6",
+                "scales the stamp, 0.1 to 10: 1 where a size is given and on lattices",
+            ),
+            optional("upright", BOOL, "false", "keep the stamp level while its strokes turn"),
         ],
         build: |call| {
             let outline = outline(call);
@@ -89,8 +127,9 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "cell",
+        about: "The cells of a tiling, side by side.",
         result: Some(Kind::Shape),
-        params: &[optional("inset", LENGTH)],
+        params: &[optional("inset", LENGTH, "0mm", "how far the cell is drawn in, not negative")],
         build: |call| {
             let inset = call.not_negative("inset", Length::ZERO)?;
             shape(Shape::Cell { inset })
@@ -98,8 +137,12 @@ pub(super) const SIGNATURES: &[Signature] = &[
     },
     Signature {
         name: "voronoi",
+        about: "The Voronoi cell of every site, side by side.",
         result: Some(Kind::Shape),
-        params: &[optional("inset", LENGTH), optional("round", LENGTH)],
+        params: &[
+            optional("inset", LENGTH, "0mm", "how far the cell is drawn in, not negative"),
+            optional("round", LENGTH, "0mm", "radius of the corners, not negative"),
+        ],
         build: |call| {
             let inset = call.not_negative("inset", Length::ZERO);
             let round = call.not_negative("round", Length::ZERO);

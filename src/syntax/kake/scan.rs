@@ -11,7 +11,7 @@ use unicode_ident::{is_xid_continue, is_xid_start};
 
 /// What a token is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub enum Kind {
     /// A word, also a keyword and `_`.
     Word,
     /// A number with its unit.
@@ -38,12 +38,15 @@ pub(super) enum Kind {
 
 /// A word or sign.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Token {
-    pub(super) kind: Kind,
-    pub(super) start: usize,
-    pub(super) end: usize,
+pub struct Token {
+    /// What it is.
+    pub kind: Kind,
+    /// Its first byte.
+    pub start: usize,
+    /// One past its last byte.
+    pub end: usize,
     /// Whether nothing stands before it on its line.
-    pub(super) leads: bool,
+    pub leads: bool,
 }
 
 /// Something that is wrong with the text whatever its grammar.
@@ -107,6 +110,13 @@ struct OpenText {
     token: usize,
     /// Braces that are open inside its interpolation.
     braces: usize,
+}
+
+impl Remarks {
+    /// Where every comment stands.
+    pub(super) fn ranges(&self) -> Vec<std::ops::Range<usize>> {
+        self.list.iter().map(|remark| remark.start..remark.end).collect()
+    }
 }
 
 /// What stopped the text of a string.

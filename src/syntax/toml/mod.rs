@@ -101,3 +101,10 @@ mod write;
 
 pub use read::read;
 pub use write::write;
+
+use super::ast::Expr;
+
+/// An expression as a value of TOML that begins a line of its own.
+pub(super) fn value(expr: &Expr) -> String {
+    encode::value(expr, 0)
+}

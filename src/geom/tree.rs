@@ -1,13 +1,14 @@
 //! Nearest points among many, some of which are taken away one by one: a k-d tree (Bentley, "K-d trees for semidynamic
 //! point sets", 1990). Of points equally near the one with the lower number counts as nearer.
 
-use crate::geom::{Point, Rect};
+use super::{Point, Rect};
 
 /// Points of a leaf.
 const LEAF: usize = 8;
 
 /// Points that are told by their number.
-pub(super) struct Tree<'a> {
+#[derive(Debug)]
+pub struct Tree<'a> {
     points: &'a [Point],
     nodes: Vec<Node>,
     /// The numbers of the points, those of a node in a row.
@@ -18,6 +19,7 @@ pub(super) struct Tree<'a> {
     alive: Vec<bool>,
 }
 
+#[derive(Debug)]
 struct Node {
     bounds: Rect,
     /// Its points in `order`.
@@ -30,11 +32,12 @@ struct Node {
 }
 
 /// A point and the square of its distance.
-pub(super) type Found = (f64, u32);
+pub type Found = (f64, u32);
 
 impl<'a> Tree<'a> {
     /// Of all points.
-    pub(super) fn new(points: &'a [Point]) -> Self {
+    #[must_use]
+    pub fn new(points: &'a [Point]) -> Self {
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
         let mut leaf_of = vec![0; points.len()];
         let mut nodes: Vec<Node> = Vec::new();
@@ -67,12 +70,13 @@ impl<'a> Tree<'a> {
     }
 
     /// Whether a point has not been taken away.
-    pub(super) fn is_there(&self, id: u32) -> bool {
+    #[must_use]
+    pub fn is_there(&self, id: u32) -> bool {
         self.alive[id as usize]
     }
 
     /// Takes a point away.
-    pub(super) fn remove(&mut self, id: u32) {
+    pub fn remove(&mut self, id: u32) {
         if !std::mem::replace(&mut self.alive[id as usize], false) {
             return;
         }
@@ -85,7 +89,8 @@ impl<'a> Tree<'a> {
     }
 
     /// The nearest point that is still there.
-    pub(super) fn nearest(&self, p: Point) -> Option<u32> {
+    #[must_use]
+    pub fn nearest(&self, p: Point) -> Option<u32> {
         let mut found = Vec::with_capacity(2);
         self.nearest_few(p, 1, f64::INFINITY, |_| true, &mut found);
         found.first().map(|&(_, id)| id)
@@ -93,7 +98,7 @@ impl<'a> Tree<'a> {
 
     /// The nearest points that are still there, up to `count` of them and none farther than the square root of `reach`,
     /// nearest first.
-    pub(super) fn nearest_few(
+    pub fn nearest_few(
         &self,
         p: Point,
         count: usize,
