@@ -15,7 +15,7 @@ use kakeami::lower::LowerConfig;
 use kakeami::{Config, compile};
 
 /// The documents with scenes in them.
-const DOCUMENTS: [&str; 9] = [
+const DOCUMENTS: [&str; 10] = [
     "README.md",
     "docs/language.md",
     "docs/gallery.md",
@@ -24,6 +24,7 @@ const DOCUMENTS: [&str; 9] = [
     "docs/grain.md",
     "docs/metrics.md",
     "docs/paper.md",
+    "docs/sheets.md",
     "docs/statistics.md",
 ];
 

@@ -18,5 +18,6 @@ mod ink;
 mod metrics;
 mod paper;
 mod repeat;
+mod sheets;
 mod statistics;
 mod support;
