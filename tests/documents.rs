@@ -15,7 +15,7 @@ use kakeami::lower::LowerConfig;
 use kakeami::{Config, compile};
 
 /// The documents with scenes in them.
-const DOCUMENTS: [&str; 12] = [
+const DOCUMENTS: &[&str] = &[
     "README.md",
     "docs/editors.md",
     "docs/language.md",
@@ -27,6 +27,7 @@ const DOCUMENTS: [&str; 12] = [
     "docs/metrics.md",
     "docs/paper.md",
     "docs/preview.md",
+    "docs/sheets.md",
     "docs/statistics.md",
 ];
 

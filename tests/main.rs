@@ -24,5 +24,6 @@ mod paper;
 mod preview;
 mod preview_server;
 mod repeat;
+mod sheets;
 mod statistics;
 mod support;

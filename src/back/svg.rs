@@ -51,7 +51,7 @@ pub fn write_sheet(sheet: &Sheet, pictures: &[Option<Drawing>], out: &mut dyn Wr
             .set("height", number::text(area.height()))
             .set("viewBox", format!("0 0 {} {}", number::text(width), number::text(height)));
         writeln!(out, "{}", open_tag(&inner).replace(SVG_NAMESPACE, ""))?;
-        writeln!(out, "{}", element::Title::new(xml_text(&place.name)))?;
+        writeln!(out, "{}", on_a_line(&element::Title::new(xml_text(&place.name))))?;
         write_page(picture, &format!("p{}-", i + 1), out)?;
         out.write_all(b"</svg>\n")?;
     }
@@ -70,11 +70,16 @@ pub fn write_sheet(sheet: &Sheet, pictures: &[Option<Drawing>], out: &mut dyn Wr
             Anchor::Start => {}
             Anchor::Middle => line = line.set("text-anchor", "middle"),
         }
-        writeln!(out, "{line}")?;
+        writeln!(out, "{}", on_a_line(&line))?;
     }
     close(1, out)?;
     out.write_all(b"</svg>\n")?;
     out.flush()
+}
+
+/// An element with its text on one line: white space in a text may be drawn.
+fn on_a_line(element: &Element) -> String {
+    element.to_string().replace('\n', "")
 }
 
 /// The name space that every root element is given, and needs only once in a file.

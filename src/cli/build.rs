@@ -171,15 +171,15 @@ fn check(arguments: &BuildArgs) -> Result<(), String> {
         return Err("`--as pattern` is about SVG: no output ends in .svg".to_owned());
     }
     for (i, output) in outputs.iter().enumerate() {
+        if same_file(output, scene) {
+            return Err(format!("{} is the scene itself", output.display()));
+        }
         let kind = kind_of(output)?;
         if arguments.plot && kind != Kind::Svg {
             return Err(format!("{}: what is plotted is written as .svg", output.display()));
         }
         if outputs[..i].contains(output) {
             return Err(format!("{} is given twice", output.display()));
-        }
-        if same_file(output, scene) {
-            return Err(format!("{} is the scene itself", output.display()));
         }
     }
     if arguments.watch && (scene == Path::new("-") || outputs.iter().any(|output| output == Path::new("-"))) {

@@ -196,14 +196,16 @@ fn extract(scene: &Path, folder: &Path) -> Ended {
 /// The files that a bundle becomes. Dependencies become folders beside the scene's, which their manifests name.
 fn extracted(text: &str, bundle: Bundle) -> Vec<(String, Vec<u8>)> {
     let scene = format!("{}\n", split(text).0.trim_end_matches('\n'));
-    let libraries: BTreeSet<String> =
-        bundle.files.iter().map(|(path, _)| loader::split(path).0.to_owned()).filter(|key| !key.is_empty()).collect();
+    // Standard libraries come with the program.
+    let own = |path: &&str| !path.starts_with(STANDARD);
+    let keys =
+        bundle.files.iter().map(|(path, _)| path.as_str()).filter(own).map(|path| loader::split(path).0.to_owned());
+    let libraries: BTreeSet<String> = keys.filter(|key| !key.is_empty()).collect();
     // With dependencies the scene has a folder of its own, so that theirs lie beside it and not within.
     let home = if libraries.is_empty() { String::new() } else { format!("{HOME}/") };
     let mut files = vec![(format!("{home}{}", bundle.scene), scene.into_bytes())];
     for (path, bytes) in bundle.files {
-        // Standard libraries come with the program.
-        if path.starts_with(STANDARD) {
+        if !own(&path.as_str()) {
             continue;
         }
         let place = match loader::split(&path) {

@@ -104,7 +104,7 @@ fn measure(grid: &Grid) -> Measures {
         true => widest.map(|of| of * side / longest),
         false => [side, side * WORDS],
     };
-    let labels = grid.rows.iter().flat_map(|row| label_lines(row)).map(|(line, size)| width(&line, size));
+    let labels = grid.rows.iter().flat_map(label_lines).map(|(line, size)| width(&line, size));
     let label = labels.fold(0.0, f64::max);
     let label = if label > 0.0 { label + GAP } else { 0.0 };
     let columns = grid.rows.iter().map(|row| row.slots.len()).max().unwrap_or(0);

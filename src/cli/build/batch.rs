@@ -109,11 +109,14 @@ struct Batch<'a> {
 /// What came of a picture: what is to be told, and how it ended. Nothing where it was not begun.
 type Told = Option<(String, Ended)>;
 
+/// What was spent on each step.
+type Spent = Vec<(String, Duration)>;
+
 /// What came of all pictures.
 struct Made {
     cells: Vec<Told>,
-    /// What was spent on each step, all pictures together.
-    spent: Vec<(String, Duration)>,
+    /// All pictures together.
+    spent: Spent,
 }
 
 impl Batch<'_> {
@@ -180,7 +183,7 @@ impl Batch<'_> {
         let room = (MOST_PIXELS / largest.max().unwrap_or(0).max(1)).max(1);
         let threads = self.threads().min(usize::try_from(room).unwrap_or(usize::MAX));
         let bar = Bar::new("pictures", self.cells.len(), 0);
-        let made: Mutex<Vec<Option<(Told, Vec<(String, Duration)>)>>> = Mutex::new(vec![None; self.cells.len()]);
+        let made: Mutex<Vec<Option<(Told, Spent)>>> = Mutex::new(vec![None; self.cells.len()]);
         in_parallel(self.cells.len(), threads, &|cell| {
             let mut progress = Progress::unseen();
             let Done { words, ended, drawing } = self.job(cell).run(&mut progress);
@@ -195,7 +198,7 @@ impl Batch<'_> {
         });
         bar.finish();
         let made = made.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let mut spent: Vec<(String, Duration)> = Vec::new();
+        let mut spent = Spent::new();
         let steps = made.iter().flatten().flat_map(|(_, spent)| spent).filter(|(name, _)| name != "total");
         for (name, step) in steps {
             match spent.iter_mut().find(|(known, _)| known == name) {

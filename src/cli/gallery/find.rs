@@ -4,13 +4,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::cli::Ended;
+use crate::library::{MANIFEST, Manifest};
 use crate::span::{Sources, Syntax};
 use crate::syntax;
 
 use super::cannot_read;
 
-/// What names a library.
-const MANIFEST: &str = "kake.toml";
 /// The folders of a library that are shown.
 const SHOWN: [&str; 2] = ["tones", "swatches"];
 
@@ -81,13 +80,15 @@ fn name(path: &Path, found: &mut Found) {
     let full = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     found.title = full.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     let Ok(text) = fs::read_to_string(path.join(MANIFEST)) else { return };
-    let Ok(manifest) = text.parse::<toml::Table>() else { return };
-    let said = |key: &str| manifest.get("library")?.get(key)?.as_str().map(str::to_owned);
-    if let Some(name) = said("name") {
-        found.title.clone_from(&name);
-        found.library = Some(name);
+    let mut sources = Sources::new();
+    let source = sources.add(MANIFEST, text.as_str(), Syntax::Toml);
+    // What is wrong with a manifest is said by whatever needs it whole.
+    let (manifest, _) = Manifest::parse(source, &text);
+    if let Some(library) = manifest.library {
+        found.title.clone_from(&library.name);
+        found.library = Some(library.name);
+        found.about = library.description;
     }
-    found.about = said("description");
 }
 
 /// The scenes in a folder and, so many levels deep, in those below, in order.
