@@ -15,11 +15,12 @@ use kakeami::lower::LowerConfig;
 use kakeami::{Config, compile};
 
 /// The documents with scenes in them.
-const DOCUMENTS: [&str; 9] = [
+const DOCUMENTS: [&str; 10] = [
     "README.md",
     "docs/language.md",
     "docs/gallery.md",
     "docs/angles.md",
+    "docs/diff.md",
     "docs/experiments.md",
     "docs/grain.md",
     "docs/metrics.md",
