@@ -756,6 +756,30 @@ fn completions_help_and_version_are_results() {
 }
 
 #[test]
+fn every_command_has_a_manual_page() {
+    let desk = Desk::new();
+    let page = desk.kake(&["man"]).out();
+    assert!(page.starts_with(".ie") || page.contains(".TH KAKE 1"), "{page}");
+    assert!(page.contains("Exit status"), "{page}");
+    assert_eq!(desk.kake(&["man", "-o", "share/man1"]).status(), 0);
+    let text = |file: &str| String::from_utf8(desk.get(file)).expect("pages are UTF-8");
+    assert_eq!(text("share/man1/kake.1"), page);
+    let help = desk.kake(&["--help"]).out();
+    let commands = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+    let mut count = 0;
+    for command in commands.filter(|line| line.starts_with("  ") && !line.starts_with("   ")) {
+        let name = command.split_whitespace().next().expect("a command has a name");
+        if name != "help" {
+            assert!(text(&format!("share/man1/kake-{name}.1")).contains("SYNOPSIS"), "{name}");
+            count += 1;
+        }
+    }
+    assert!(count > 10);
+    desk.put("file", "");
+    assert_eq!(desk.kake(&["man", "-o", "file/below"]).status(), 3);
+}
+
+#[test]
 fn pictures_do_not_depend_on_where_they_are_built() {
     let desk = Desk::new();
     desk.put("deep/er/scene.kake", SCENE);

@@ -16,6 +16,7 @@ mod fmt;
 mod ir;
 mod limits;
 mod lock;
+mod man;
 mod metrics;
 mod packages;
 mod params;
@@ -58,9 +59,19 @@ impl From<Ended> for ExitCode {
     }
 }
 
-/// A compiler for kakeami, manga's hand-hatched tone.
+/// What ends the help and the manual page of the program.
+const EXIT_STATUS: &str = "\
+Exit status: 0 done; 1 the scene is at fault, or a test, check or comparison of it failed; 2 the command line is at fault; \
+3 reading or writing failed.
+
+Results go to standard output, words about them to standard error. `-` is standard input or output.";
+
+/// A compiler for kakeami, manga's hand-hatched tone
+///
+/// Kakeami is manga's hatching: small tiles of parallel strokes, each turned against its neighbours. A scene, in a small
+/// language or in TOML, describes regions, tile shapes, fills, fields and seeds; what comes out is SVG, PNG or PDF.
 #[derive(Debug, Parser)]
-#[command(name = "kake", version, max_term_width = 100, arg_required_else_help = true)]
+#[command(name = "kake", version, max_term_width = 100, arg_required_else_help = true, after_long_help = EXIT_STATUS)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -94,6 +105,8 @@ enum Command {
     Explain(explain::ExplainArgs),
     /// Print a completion script for a shell
     Completions(CompletionsArgs),
+    /// Print the manual page, or write one for each command
+    Man(man::ManArgs),
 }
 
 #[derive(Debug, Args)]
@@ -158,6 +171,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             clap_complete::generate(arguments.shell, &mut Cli::command(), "kake", &mut script);
             files::print(&script)
         }
+        Command::Man(arguments) => man::run(&arguments),
     };
     ended.into()
 }

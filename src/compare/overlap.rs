@@ -67,7 +67,7 @@ impl Lying {
     fn new(line: Line) -> Option<Self> {
         let [a, b] = line.ends;
         let (mut dx, mut dy) = (b.x - a.x, b.y - a.y);
-        let length = dx.hypot(dy);
+        let length = libm::hypot(dx, dy);
         if !(length.is_finite() && length > 0.0) {
             return None;
         }
