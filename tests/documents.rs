@@ -21,6 +21,7 @@ const DOCUMENTS: &[&str] = &[
     "docs/language.md",
     "docs/gallery.md",
     "docs/angles.md",
+    "docs/diff.md",
     "docs/experiments.md",
     "docs/grain.md",
     "docs/libraries.md",

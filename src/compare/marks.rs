@@ -2,12 +2,14 @@
 //!
 //! In: two drawings. Out: a drawing of both: marks that only the old one has in red, those that only the new one has in blue
 //! and those of both in grey. Marks are the same that have one form, pen and ink to a thousandth of a millimetre; a straight
-//! stroke may run either way. A stroke that only changed its length is in it twice.
+//! stroke may run either way, and of one that only became longer or shorter a part stayed.
 
+use std::collections::BTreeMap;
 use std::hash::Hasher;
 
 use siphasher::sip128::{Hasher128, SipHasher13};
 
+use super::overlap::{self, Fate, Line, Side};
 use crate::drawing::{Dots, Drawing, Layer, Page, Strokes};
 use crate::geom::chain;
 use crate::geom::{Length, Point};
@@ -43,23 +45,70 @@ pub fn drawn(layer: &Layer) -> Length {
     Length::mm(sum)
 }
 
+/// What is known of a mark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    /// The other drawing has it too.
+    Both,
+    /// The other drawing has no such mark.
+    Only,
+    /// It is a straight stroke, of which the other drawing may have a part.
+    Parted,
+}
+
 /// A drawing of what went, what came and what stayed.
 #[must_use]
 pub fn marks(old: &Drawing, new: &Drawing) -> Drawing {
     let [mut before, mut after] = [old, new].map(keys);
-    let [went, came] = unmatched(&mut before, &mut after);
-    let mut layers = Vec::new();
+    let mut states = unmatched(&mut before, &mut after);
+    let parts = parted([old, new], &mut states);
+    let [went, came] = &states;
     let papers = [old, new].map(|drawing| drawing.page.paper.unwrap_or(Colour::WHITE));
-    picked(new, &came, false, "stayed", |ink| if ink == papers[1] { Colour::WHITE } else { STAYED }, &mut layers);
-    picked(old, &went, true, "went", |ink| if ink == papers[0] { PALE_WENT } else { WENT }, &mut layers);
-    picked(new, &came, true, "came", |ink| if ink == papers[1] { PALE_CAME } else { CAME }, &mut layers);
+    let mut layers = Vec::new();
+    let ink = |ink| if ink == papers[1] { Colour::WHITE } else { STAYED };
+    picked(new, (came, State::Both), (&parts, Fate::Stayed, "stayed"), ink, &mut layers);
+    let ink = |ink| if ink == papers[0] { PALE_WENT } else { WENT };
+    picked(old, (went, State::Only), (&parts, Fate::Went, "went"), ink, &mut layers);
+    let ink = |ink| if ink == papers[1] { PALE_CAME } else { CAME };
+    picked(new, (came, State::Only), (&parts, Fate::Came, "came"), ink, &mut layers);
     let sizes = [old, new].map(|drawing| (drawing.page.width, drawing.page.height));
     if sizes[0] != sizes[1] {
-        layers.extend(
-            [("went", WENT, sizes[0]), ("came", CAME, sizes[1])].map(|(group, ink, size)| sheet(group, ink, size)),
-        );
+        let sheets = [("went", WENT, sizes[0]), ("came", CAME, sizes[1])];
+        layers.extend(sheets.map(|(group, ink, size)| sheet(group, ink, size)));
     }
     Drawing { page: common(&old.page, &new.page), layers }
+}
+
+/// Parts of straight strokes by what became of them and by their layers.
+type Parts = BTreeMap<(Fate, usize), Vec<(Length, Cap, [Point; 2])>>;
+
+/// Takes those straight strokes apart that only one drawing has as they are.
+fn parted(drawings: [&Drawing; 2], states: &mut [Vec<State>; 2]) -> Parts {
+    let mut lines = Vec::new();
+    let mut looks: BTreeMap<u128, (Length, Cap)> = BTreeMap::new();
+    for ((drawing, states), side) in drawings.into_iter().zip(states).zip([Side::Old, Side::New]) {
+        let marks = drawing
+            .layers
+            .iter()
+            .enumerate()
+            .flat_map(|(number, layer)| each(layer).map(move |mark| (number, layer.ink, mark)));
+        for ((layer, ink, mark), state) in marks.zip(states) {
+            if let (Mark::Line(pen, cap, ends), State::Only) = (mark, *state) {
+                // A stroke of no length has what is told of all strokes of its look and nothing else.
+                let key = key(Mark::Line(pen, cap, [Point::new(0.0, 0.0); 2]), ink);
+                looks.insert(key, (pen, cap));
+                lines.push(Line { key, side, layer, ends });
+                *state = State::Parted;
+            }
+        }
+    }
+    let mut found = Parts::new();
+    for (fate, key, layer, ends) in overlap::parts(lines) {
+        if let Some(&(pen, cap)) = looks.get(&key) {
+            found.entry((fate, layer)).or_default().push((pen, cap, ends));
+        }
+    }
+    found
 }
 
 /// A page that holds two, without a colour of its own but white.
@@ -158,38 +207,41 @@ fn key(mark: Mark<'_>, ink: Colour) -> u128 {
     hash.finish128().as_u128()
 }
 
-/// For every mark of two drawings, whether the other has none left that is the same.
-fn unmatched(old: &mut [(u128, usize)], new: &mut [(u128, usize)]) -> [Vec<bool>; 2] {
+/// For every mark of two drawings, whether the other has one left that is the same.
+fn unmatched(old: &mut [(u128, usize)], new: &mut [(u128, usize)]) -> [Vec<State>; 2] {
     old.sort_unstable();
     new.sort_unstable();
-    let [mut went, mut came] = [old.len(), new.len()].map(|count| vec![true; count]);
+    let [mut went, mut came] = [old.len(), new.len()].map(|count| vec![State::Only; count]);
     let mut others = new.iter().peekable();
     for &(key, number) in old.iter() {
         while others.next_if(|other| other.0 < key).is_some() {}
         if let Some(other) = others.next_if(|other| other.0 == key) {
-            went[number] = false;
-            came[other.1] = false;
+            went[number] = State::Both;
+            came[other.1] = State::Both;
         }
     }
     [went, came]
 }
 
-/// Adds those marks of a drawing that are flagged so, layer by layer, in another ink.
+/// Adds those marks of a drawing that are in this state, and what parts of strokes share their fate, layer by layer in
+/// another ink.
 fn picked(
     drawing: &Drawing,
-    flags: &[bool],
-    flag: bool,
-    group: &str,
+    (states, state): (&[State], State),
+    (parts, fate, group): (&Parts, Fate, &str),
     ink: impl Fn(Colour) -> Colour,
     layers: &mut Vec<Layer>,
 ) {
-    let mut flags = flags.iter();
-    for layer in &drawing.layers {
+    let mut states = states.iter();
+    for (number, layer) in drawing.layers.iter().enumerate() {
         let mut picked = Layer::new(vec![group.to_owned()], layer.name.clone(), ink(layer.ink));
         for mark in each(layer) {
-            if flags.next() == Some(&flag) {
+            if states.next() == Some(&state) {
                 put(mark, &mut picked);
             }
+        }
+        for &(pen, cap, ends) in parts.get(&(fate, number)).into_iter().flatten() {
+            put(Mark::Line(pen, cap, ends), &mut picked);
         }
         picked.strokes.iter_mut().for_each(|strokes| strokes.curves.end_bundle());
         picked.tapers.spines.end_bundle();
@@ -263,6 +315,7 @@ mod tests {
         new.layers[0].dots[0].radius = Length::mm(0.4);
         let dots = old.layers[0].dots[0].centres.len() as u64;
         let found = marks(&old, &new);
+        // The stroke that moved at one end lies on no straight line with the old one.
         assert_eq!(count(&found, "went"), 2 + dots);
         assert_eq!(count(&found, "came"), 1 + dots);
         assert_eq!(count(&found, "stayed"), all - 2 - dots);
@@ -278,6 +331,15 @@ mod tests {
         let old = one(lines(0.2, Cap::Butt, &[&[there, there]]));
         let found = marks(&old, &one(lines(0.2, Cap::Butt, &[&[back]])));
         assert_eq!((count(&found, "stayed"), count(&found, "went"), count(&found, "came")), (1, 1, 0));
+    }
+
+    #[test]
+    fn of_a_shorter_stroke_a_part_stayed() {
+        let old = one(lines(0.2, Cap::Butt, &[&[[(1.0, 1.0), (5.0, 4.0)]]]));
+        let found = marks(&old, &one(lines(0.2, Cap::Butt, &[&[[(1.0, 1.0), (3.0, 2.5)]]])));
+        assert_eq!((count(&found, "stayed"), count(&found, "went"), count(&found, "came")), (1, 1, 0));
+        let thicker = marks(&old, &one(lines(0.3, Cap::Butt, &[&[[(1.0, 1.0), (3.0, 2.5)]]])));
+        assert_eq!((count(&thicker, "stayed"), count(&thicker, "went"), count(&thicker, "came")), (0, 1, 1));
     }
 
     #[test]

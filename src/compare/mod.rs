@@ -6,6 +6,7 @@
 
 mod fingerprint;
 mod marks;
+mod overlap;
 mod picture;
 mod tiles;
 

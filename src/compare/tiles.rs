@@ -86,6 +86,13 @@ impl Shift {
     pub fn is_nothing(&self) -> bool {
         self.moved == 0 && self.went == 0 && self.came == 0 && self.turned == 0 && self.layers == 0
     }
+
+    /// Whether the pattern is another one: no tile stayed, and those that lie near one of the others do so by chance, for
+    /// at least as many have none near them.
+    #[must_use]
+    pub fn is_anew(&self) -> bool {
+        self.stayed == 0 && self.went + self.came >= self.moved && self.went > 0 && self.came > 0
+    }
 }
 
 /// What became of the tiles of one pattern in another one.

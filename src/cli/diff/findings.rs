@@ -14,6 +14,9 @@ use crate::scene::{Colour, Depth};
 
 use super::side::{MOST_MEASURED, Made, Painted};
 
+/// Measures below it are zero: rounding differs where nothing else does.
+const NOTHING: f64 = 1e-9;
+
 /// All that differs.
 #[derive(Debug, Serialize)]
 pub(super) struct Findings {
@@ -385,6 +388,12 @@ fn measures(old: &Painted, new: &Painted) -> Vec<Measure> {
     }
     let gone = before.iter().filter(|(name, _)| left.contains_key(name.as_ref()));
     found.extend(gone.map(|(name, value)| Measure { name: name.to_string(), old: *value, new: None }));
+    for measure in &mut found {
+        // What rounding leaves of nothing is nothing.
+        for value in [&mut measure.old, &mut measure.new].into_iter().flatten() {
+            *value = if value.abs() < NOTHING { 0.0 } else { *value };
+        }
+    }
     found.retain(|measure| measure.old.map(digits) != measure.new.map(digits));
     found
 }

@@ -132,7 +132,8 @@ impl Repository {
         let tree = |commit: &str| self.state(commit).ok();
         let disk = || (State::Disk, "the working tree".to_owned());
         if !is_name(hex) || hex.bytes().all(|digit| digit == b'0') {
-            return disk();
+            // It is no version but the file itself, and goes without saying.
+            return (State::Disk, String::new());
         }
         if holds("HEAD")
             && let Some(state) = tree("HEAD")

@@ -158,6 +158,10 @@ pub(super) fn shifted(shift: &Shift, paintbox: Paintbox) -> String {
     let mut parts = Vec::new();
     let mut part = |count: usize, text: String| parts.extend((count > 0).then_some(text));
     let count = |count: usize| grouped(count as u64);
+    if shift.is_anew() {
+        let [old, new] = [shift.went, shift.came].map(|only| count(shift.moved + only));
+        return format!("placed anew: {} → {}", paintbox.old(&old), paintbox.new_one(&new));
+    }
     if shift.moved + shift.went + shift.came == 0 {
         part(shift.stayed, format!("all {} stayed", count(shift.stayed)));
     } else {
@@ -307,6 +311,8 @@ mod tests {
             "7 stayed · 2 moved by 0.25mm (median), 1.50mm at most · 1 went · 4 came"
         );
         assert_eq!(shifted(&Shift::default(), Paintbox::Plain), "none");
+        let shift = Shift { moved: 37, went: 94, came: 55, turned: 35, ..Shift::default() };
+        assert_eq!(shifted(&shift, Paintbox::Plain), "placed anew: 131 → 92");
     }
 
     #[test]
