@@ -27,6 +27,7 @@ pub mod back;
 pub mod chart;
 #[doc(hidden)]
 pub mod cli;
+pub mod compare;
 pub mod diag;
 pub mod drawing;
 pub mod experiment;

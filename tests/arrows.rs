@@ -27,6 +27,7 @@ const ARROWS: [(&str, &[&str]); 25] = [
     ("chart", &["geom"]),
     ("illustrate", &["chart", "metrics"]),
     ("back", &["drawing", "geom", "scene"]),
+    ("compare", &["back", "drawing", "geom", "metrics", "scene", "stage"]),
     ("library", &["diag", "loader", "span", "syntax"]),
     ("lower", &["syntax", "scene", "region", "field", "loader", "diag", "span", "geom", "random"]),
     (
@@ -40,6 +41,7 @@ const ARROWS: [(&str, &[&str]); 25] = [
         &[
             "back",
             "chart",
+            "compare",
             "diag",
             "drawing",
             "experiment",

@@ -105,7 +105,7 @@ impl Ran {
         self.0.status.code().expect("it ends by itself")
     }
 
-    fn out(&self) -> String {
+    pub(crate) fn out(&self) -> String {
         String::from_utf8(self.0.stdout.clone()).expect("it prints UTF-8")
     }
 

@@ -23,6 +23,7 @@ const DOCUMENTS: [&str; 10] = [
     "docs/angles.md",
     "docs/experiments.md",
     "docs/grain.md",
+    "docs/libraries.md",
     "docs/metrics.md",
     "docs/paper.md",
     "docs/statistics.md",

@@ -15,6 +15,7 @@ mod experiment;
 mod gallery;
 mod grain;
 mod ink;
+mod library;
 mod lsp;
 mod metrics;
 mod paper;

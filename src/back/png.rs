@@ -1,15 +1,16 @@
-//! PNG: a drawing goes in, a file with its resolution, its colour space and its metadata comes out.
+//! PNG: a drawing goes in, a file with its resolution, its colour space and its metadata comes out; or pixels go in, and
+//! come back.
 //!
 //! Grey pictures are grey, pictures of ink or paper alone have as few bits a pixel as their colours need.
 
 use std::borrow::Cow;
 use std::fmt;
-use std::io::{self, Write};
+use std::io::{self, Cursor, Write};
 
 use ::png::text_metadata::ITXtChunk;
 use ::png::{
-    BitDepth, ColorType, Compression, DeflateCompression, Encoder, EncodingError, Filter, PixelDimensions,
-    SrgbRenderingIntent, Unit,
+    BitDepth, ColorType, Compression, Decoder, DecodingError, DeflateCompression, Encoder, EncodingError, Filter,
+    Limits, PixelDimensions, SrgbRenderingIntent, Transformations, Unit,
 };
 
 use super::metadata::{KEYWORD, Metadata};
@@ -18,12 +19,12 @@ use crate::drawing::Drawing;
 use crate::geom::Length;
 use crate::scene::Colour;
 
-/// Why a PNG cannot be written.
+/// Why a PNG cannot be written or read.
 #[derive(Debug)]
 pub enum PngError {
     /// What the file answered.
     Io(io::Error),
-    /// The format has no such picture: a side of no pixels, or of more than 2^31.
+    /// The format has no such picture: a side of no pixels, or of more than 2^31; or what is read is no PNG.
     Format(String),
 }
 
@@ -53,6 +54,15 @@ impl From<EncodingError> for PngError {
     }
 }
 
+impl From<DecodingError> for PngError {
+    fn from(error: DecodingError) -> Self {
+        match error {
+            DecodingError::IoError(error) => Self::Io(error),
+            other => Self::Format(other.to_string()),
+        }
+    }
+}
+
 /// Pictures of so many pixels are packed tightly; larger ones quickly, or packing would take longer than drawing.
 const SMALL: u64 = 16 << 20;
 
@@ -61,12 +71,61 @@ const SMALL: u64 = 16 << 20;
 /// # Errors
 /// What `out` answers, and sizes that the format does not know.
 pub fn write(drawing: &Drawing, metadata: Option<&Metadata>, out: &mut dyn Write) -> Result<(), PngError> {
-    let [width, height] = drawing.page.pixels;
-    let mut encoder = Encoder::new(&mut *out, width, height);
-    encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
     // Pixels per metre; the format has no other unit.
     let per_metre = (drawing.page.dpi * (1000.0 / Length::MM_PER_INCH)).round() as u32;
-    encoder.set_pixel_dims(Some(PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter }));
+    let resolution = PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter };
+    let text = metadata.map(Metadata::to_json).transpose()?;
+    write_pixels(&render(drawing), drawing.page.pixels, Some(resolution), text, out)
+}
+
+/// The bytes of a PNG of these pixels, without a resolution and without metadata.
+///
+/// # Errors
+/// If the format does not know such a size.
+pub fn encode(pixels: &Pixels) -> Result<Vec<u8>, PngError> {
+    let side = |n: usize| u32::try_from(n).map_err(|_| PngError::Format("the picture is too large".to_owned()));
+    let mut bytes = Vec::new();
+    write_pixels(pixels, [side(pixels.width)?, side(pixels.height)?], None, None, &mut bytes)?;
+    Ok(bytes)
+}
+
+/// The pixels of a PNG, eight bits a channel; palettes are resolved, so that none comes back indexed.
+///
+/// # Errors
+/// If the bytes are no PNG, end too early or hold more than `most` pixels.
+pub fn decode(bytes: &[u8], most: u64) -> Result<Pixels, PngError> {
+    let bound = usize::try_from(most.saturating_mul(8).saturating_add(1 << 20)).unwrap_or(usize::MAX);
+    let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: bound });
+    decoder.set_transformations(Transformations::normalize_to_color8());
+    let mut reader = decoder.read_info()?;
+    let (width, height) = (reader.info().width, reader.info().height);
+    if u64::from(width) * u64::from(height) > most {
+        return Err(PngError::Format(format!("the picture has {width} x {height} pixels, more than {most}")));
+    }
+    let format = match reader.output_color_type().0 {
+        ColorType::Grayscale => Format::Grey,
+        ColorType::GrayscaleAlpha => Format::GreyAlpha,
+        ColorType::Rgb => Format::Rgb,
+        ColorType::Rgba => Format::Rgba,
+        ColorType::Indexed => return Err(PngError::Format("the picture has no palette".to_owned())),
+    };
+    let size = reader.output_buffer_size().ok_or_else(|| PngError::Format("the picture is too large".to_owned()))?;
+    let mut data = vec![0; size];
+    reader.next_frame(&mut data)?;
+    Ok(Pixels { width: width as usize, height: height as usize, format, data })
+}
+
+/// Writes pixels, and the metadata's text where there is one.
+fn write_pixels(
+    pixels: &Pixels,
+    [width, height]: [u32; 2],
+    resolution: Option<PixelDimensions>,
+    text: Option<String>,
+    out: &mut dyn Write,
+) -> Result<(), PngError> {
+    let mut encoder = Encoder::new(&mut *out, width, height);
+    encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
+    encoder.set_pixel_dims(resolution);
     if u64::from(width) * u64::from(height) <= SMALL {
         // Line art is long runs of paper and ink, which filters only break up.
         encoder.set_filter(Filter::NoFilter);
@@ -74,17 +133,16 @@ pub fn write(drawing: &Drawing, metadata: Option<&Metadata>, out: &mut dyn Write
     } else {
         encoder.set_compression(Compression::Fast);
     }
-    let pixels = render(drawing);
     let data = match &pixels.format {
-        Format::Grey => plain(&mut encoder, ColorType::Grayscale, &pixels),
-        Format::GreyAlpha => plain(&mut encoder, ColorType::GrayscaleAlpha, &pixels),
-        Format::Rgb => plain(&mut encoder, ColorType::Rgb, &pixels),
-        Format::Rgba => plain(&mut encoder, ColorType::Rgba, &pixels),
-        Format::Indexed(palette) => indexed(&mut encoder, palette, &pixels),
+        Format::Grey => plain(&mut encoder, ColorType::Grayscale, pixels),
+        Format::GreyAlpha => plain(&mut encoder, ColorType::GrayscaleAlpha, pixels),
+        Format::Rgb => plain(&mut encoder, ColorType::Rgb, pixels),
+        Format::Rgba => plain(&mut encoder, ColorType::Rgba, pixels),
+        Format::Indexed(palette) => indexed(&mut encoder, palette, pixels),
     };
     let mut writer = encoder.write_header()?;
-    if let Some(metadata) = metadata {
-        let mut chunk = ITXtChunk::new(KEYWORD, metadata.to_json()?);
+    if let Some(text) = text {
+        let mut chunk = ITXtChunk::new(KEYWORD, text);
         chunk.compressed = true;
         writer.write_text_chunk(&chunk)?;
     }
@@ -143,8 +201,6 @@ fn pack(pixels: &Pixels, bits: usize, value: impl Fn(u8) -> u8) -> Vec<u8> {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, clippy::panic)]
 mod tests {
-    use std::io::Cursor;
-
     use super::super::samples::{layer, lines, on_threads, page, scattered};
     use super::*;
     use crate::scene::{Cap, Depth};
@@ -235,6 +291,26 @@ mod tests {
             assert_eq!(found, wanted, "{inks:?} {paper:?} {depth:?}");
             assert!(inks.is_empty() || wanted.iter().any(|pixel| pixel != &wanted[0]));
         }
+    }
+
+    #[test]
+    fn pixels_come_back_as_they_were() {
+        for (inks, paper) in
+            [(&[Colour::BLACK][..], Some(Colour::WHITE)), (&[RED], None), (&[RED], Some(Colour::WHITE))]
+        {
+            let pixels = render(&bars(inks, paper, Depth::Eight));
+            let read = decode(&encode(&pixels).unwrap(), 10_000).unwrap();
+            assert_eq!(read, pixels);
+        }
+        let indexed = render(&bars(&[RED, Colour::BLACK], None, Depth::One));
+        let bytes = encode(&indexed).unwrap();
+        let read = decode(&bytes, 10_000).unwrap();
+        for (x, y) in (0..13).flat_map(|x| (0..15).map(move |y| (x, y))) {
+            assert_eq!(read.colour(x, y), indexed.colour(x, y));
+        }
+        assert!(decode(&bytes, 13 * 15 - 1).is_err_and(|error| error.to_string().contains("13 x 15")));
+        assert!(decode(&bytes[..bytes.len() / 2], 10_000).is_err());
+        assert!(decode(b"<svg/>", 10_000).is_err());
     }
 
     #[test]

@@ -8,7 +8,7 @@ use clap::Args;
 use crate::library::{LOCK, MANIFEST};
 
 use super::files::{OpenError, plain, replace};
-use super::packages::Packages;
+use super::packages::{Packages, below};
 use super::{Ended, report};
 
 /// Digits of a hash that people are shown.
@@ -65,6 +65,10 @@ fn write(folder: &Path, packages: &Packages) -> Ended {
     };
     let (file, text) = (folder.join(LOCK), lock.to_string());
     if fs::read(&file).ok().as_deref() != Some(text.as_bytes()) {
+        if let Err(error) = below(folder, LOCK) {
+            eprintln!("kake: cannot write {}: {}", file.display(), plain(&error));
+            return Ended::Io;
+        }
         match replace(&file, &text) {
             Ended::Done => {}
             ended => return ended,

@@ -18,11 +18,13 @@ mod lock;
 mod lsp;
 mod man;
 mod metrics;
+mod new;
 mod packages;
 mod params;
 mod picture;
 mod progress;
 mod report;
+mod test;
 mod wedge;
 
 use std::ffi::OsString;
@@ -97,6 +99,10 @@ enum Command {
     Wedge(wedge::WedgeArgs),
     /// Run a scene's experiment: every condition with every seed, measured, analysed and pictured
     Experiment(Box<experiment::ExperimentArgs>),
+    /// Make a library of tones in a new folder: kake.toml, tones, swatches, pins, and files for git and a build server
+    New(new::NewArgs),
+    /// Say which swatches of a library do not look as they were pinned
+    Test(test::TestArgs),
     /// Lock what a library depends on: writes the hashes of its dependencies into kake.lock
     Lock(lock::LockArgs),
     /// Explain a diagnostic's code, or list them all
@@ -163,6 +169,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Metrics(arguments) => metrics::run(&arguments),
         Command::Wedge(arguments) => wedge::run(&arguments),
         Command::Experiment(arguments) => experiment::run(&arguments),
+        Command::New(arguments) => new::run(&arguments),
+        Command::Test(arguments) => test::run(&arguments),
         Command::Lock(arguments) => lock::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Lsp(arguments) => lsp::run(&arguments),

@@ -9,7 +9,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::diag::{Code, Diagnostic, sort};
+use crate::diag::{Code, Diagnostic, Severity, sort};
 use crate::library::lock::{Change, ContentHash, Locked};
 use crate::library::{Dependency, LOCK, Lock, MANIFEST, Manifest};
 use crate::loader::{self, UnknownDependency};
@@ -169,7 +169,7 @@ impl Packages {
         let hint = "`kake lock` locks what is there now";
         let warning = |span: Option<Span>, message: String| {
             let diagnostic = Diagnostic::without_span(Code::Lock, message).hint(hint);
-            Diagnostic { span, severity: crate::diag::Severity::Warning, ..diagnostic }
+            Diagnostic { span, severity: Severity::Warning, ..diagnostic }
         };
         let text = match read_below(&root.folder, LOCK) {
             Ok(bytes) => bytes,
@@ -180,7 +180,13 @@ impl Packages {
             .and_then(|(source, text)| Lock::parse(source, &text));
         let was = match parsed {
             Ok(lock) => lock,
-            Err(diagnostics) => return (diagnostics, sources),
+            Err(diagnostics) => {
+                let warned = diagnostics.into_iter().map(|diagnostic| {
+                    let hint = diagnostic.hint.clone().or_else(|| Some("`kake lock` writes the file anew".to_owned()));
+                    Diagnostic { severity: Severity::Warning, hint, ..diagnostic }
+                });
+                return (warned.collect(), sources);
+            }
         };
         let diagnostics = match self.lock() {
             Ok(now) => {
@@ -348,8 +354,27 @@ fn walked(from: &str, path: &str) -> String {
     parts.join("/")
 }
 
+/// The place of a file of a folder that is to be written, its folder made: no link leads out of the folder.
+pub(super) fn below(folder: &Path, file: &str) -> io::Result<PathBuf> {
+    let out = || io::Error::other("a link there leads out of the library's folder");
+    let target = folder.join(file);
+    // The nearest folder that is there already says where new ones are made.
+    let parent = target.parent().unwrap_or(folder);
+    let there = parent.ancestors().find(|folder| folder.symlink_metadata().is_ok()).unwrap_or(folder);
+    if !there.canonicalize()?.starts_with(folder) {
+        return Err(out());
+    }
+    fs::create_dir_all(parent)?;
+    match target.symlink_metadata() {
+        Ok(kind) if kind.is_symlink() && !target.canonicalize().is_ok_and(|full| full.starts_with(folder)) => {
+            Err(out())
+        }
+        _ => Ok(target),
+    }
+}
+
 /// Reads a small file of a folder, which no link leads out of.
-fn read_below(folder: &Path, file: &str) -> io::Result<Vec<u8>> {
+pub(super) fn read_below(folder: &Path, file: &str) -> io::Result<Vec<u8>> {
     let full = folder.join(file).canonicalize()?;
     if !full.starts_with(folder) {
         return Err(io::Error::other("it is a link that leads out of its folder"));

@@ -24,6 +24,14 @@ pub(super) fn diagnostics(diagnostics: &[Diagnostic], sources: &Sources) -> Ende
     if diagnostics.iter().any(Diagnostic::is_error) { Ended::Fault } else { Ended::Done }
 }
 
+/// Diagnostics as text without colours, for files and for later.
+pub(super) fn text(diagnostics: &[Diagnostic], sources: &Sources) -> String {
+    match diagnostics {
+        [] => String::new(),
+        found => render(found, sources, RenderConfig { width: WIDTH, colour: false, unicode: true }),
+    }
+}
+
 /// Says why a scene cannot be opened.
 pub(super) fn cannot_open(error: OpenError) -> Ended {
     match error {
