@@ -15,7 +15,7 @@ use kakeami::lower::LowerConfig;
 use kakeami::{Config, compile};
 
 /// The documents with scenes in them.
-const DOCUMENTS: [&str; 10] = [
+const DOCUMENTS: [&str; 11] = [
     "README.md",
     "docs/editors.md",
     "docs/language.md",
