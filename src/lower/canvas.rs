@@ -12,7 +12,7 @@ use crate::syntax::ast::{Expr, Property, StatementKind};
 use super::convert::Slot;
 use super::cx::Cx;
 use super::eval;
-use super::reference::Property as Known;
+use super::properties::CANVAS as PROPERTIES;
 use super::scope::Scope;
 use super::value::{Kind, Value};
 
@@ -33,67 +33,8 @@ const SHEETS: [(&str, f64, f64); 14] = [
     ("letter", 215.9, 279.4),
     ("tabloid", 279.4, 431.8),
 ];
-const SHEET_NAMES: &[&str] =
+pub(super) const SHEET_NAMES: &[&str] =
     &["a0", "a1", "a2", "a3", "a4", "a5", "a6", "b4", "b5", "jis_b4", "jis_b5", "legal", "letter", "tabloid"];
-
-/// The properties of a canvas with what each takes.
-pub(super) const PROPERTIES: [Known; 10] = [
-    Known {
-        name: "size",
-        slot: Slot::or_words(Kind::Point, SHEET_NAMES),
-        default: "",
-        about: "Width and height, or the name of a sheet, upright.",
-    },
-    Known {
-        name: "bleed",
-        slot: Slot::of(Kind::Length),
-        default: "0mm",
-        about: "How far the picture goes on beyond each side, to be trimmed off.",
-    },
-    Known { name: "dpi", slot: Slot::of(Kind::Number), default: "600", about: "Pixels per inch, 1 to 100,000." },
-    Known {
-        name: "pixels",
-        slot: Slot::ANY,
-        default: "from dpi",
-        about: "Width and height of a PNG in whole pixels, instead of `dpi`.",
-    },
-    Known {
-        name: "paper",
-        slot: Slot::or_words(Kind::Colour, &["none"]),
-        default: "white",
-        about: "The colour of the paper, or `none`, which is transparent.",
-    },
-    Known {
-        name: "ink",
-        slot: Slot::of(Kind::Colour),
-        default: "black",
-        about: "The colour of what is drawn, unless a layer or a fill says otherwise.",
-    },
-    Known {
-        name: "depth",
-        slot: Slot::of(Kind::Number),
-        default: "8",
-        about: "8 for 256 greys, 1 for ink or paper, decided at half coverage.",
-    },
-    Known {
-        name: "unit",
-        slot: Slot::of(Kind::Length),
-        default: "1mm",
-        about: "The length that a bare number means, above 0.",
-    },
-    Known {
-        name: "repeat",
-        slot: Slot::of(Kind::Bool),
-        default: "false",
-        about: "Whether the left border continues on the right and the upper one below.",
-    },
-    Known {
-        name: "gain",
-        slot: Slot::of(Kind::Length),
-        default: "0mm",
-        about: "How far ink spreads beyond each edge of a mark, for `darkness` to reckon with.",
-    },
-];
 
 /// The names of the properties.
 fn names() -> impl Iterator<Item = &'static str> + Clone {

@@ -12,32 +12,9 @@ use super::convert::Slot;
 use super::cx::Cx;
 use super::eval;
 use super::params;
-use super::reference::Property as Known;
+use super::properties::EXPERIMENT as PROPERTIES;
 use super::scope::Scope;
 use super::value::{Kind, Member, Value};
-
-/// The properties of experiments with what each takes.
-pub(super) const PROPERTIES: [Known; 4] = [
-    Known { name: "seeds", slot: Slot::of(Kind::Range), default: "", about: "A range of whole numbers, both ends in." },
-    Known {
-        name: "factors",
-        slot: Slot::of(Kind::Record),
-        default: "none",
-        about: "Parameters with the lists of their levels; the conditions are all combinations.",
-    },
-    Known {
-        name: "reference",
-        slot: Slot::of(Kind::List),
-        default: "none",
-        about: "Conditions outside the design, each a record of values of some parameters.",
-    },
-    Known {
-        name: "images",
-        slot: Slot::of(Kind::Record),
-        default: "none",
-        about: "Parameters with the values that each condition is drawn with, in all combinations.",
-    },
-];
 
 /// The names of the properties.
 fn names() -> impl Iterator<Item = &'static str> {

@@ -22,6 +22,7 @@ mod modules;
 mod names;
 mod ops;
 mod params;
+mod properties;
 pub mod reference;
 mod repeat;
 mod scope;

@@ -5,24 +5,12 @@
 
 pub use super::call::{Need, Param, Signature};
 pub use super::convert::Slot;
+pub use super::properties::Property;
 pub use super::value::Kind;
 
-use super::{canvas, experiment, tone, vocabulary};
+use super::{properties, vocabulary};
 use crate::scene::Colour;
 use crate::syntax::ast::Unit;
-
-/// A property of a block.
-#[derive(Debug, Clone, Copy)]
-pub struct Property {
-    /// Its name.
-    pub name: &'static str,
-    /// What it takes.
-    pub slot: Slot,
-    /// What it is where it is not given, in words of the language or about them; empty where it must be given.
-    pub default: &'static str,
-    /// What it is, in a sentence.
-    pub about: &'static str,
-}
 
 /// The blocks that have properties.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -39,9 +27,9 @@ pub enum Block {
 #[must_use]
 pub fn properties(block: Block) -> &'static [Property] {
     match block {
-        Block::Canvas => &canvas::PROPERTIES,
-        Block::Tone => &tone::PROPERTIES,
-        Block::Experiment => &experiment::PROPERTIES,
+        Block::Canvas => &properties::CANVAS,
+        Block::Tone => &properties::TONE,
+        Block::Experiment => &properties::EXPERIMENT,
     }
 }
 

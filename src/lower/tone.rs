@@ -15,7 +15,7 @@ use crate::syntax::ast::{Argument, Expr, ExprKind, Property, ToneBody};
 use super::convert::{Slot, coerce};
 use super::cx::Cx;
 use super::modules::Tone;
-use super::reference::Property as Known;
+use super::properties::{Property as Known, TONE as PROPERTIES};
 use super::scope::Scope;
 use super::value::{FieldUnit, Kind, TypedField, Value};
 use super::{eval, function, ground, names};
@@ -39,92 +39,6 @@ struct Given {
     value: Value,
     span: Span,
 }
-
-/// The properties of tones with what each takes.
-pub(super) const PROPERTIES: [Known; 17] = [
-    Known { name: "place", slot: Slot::of(Kind::Placement), default: "", about: "Where the sites of tiles lie." },
-    Known {
-        name: "domain",
-        slot: Slot::words(&["canvas", "region"]),
-        default: "canvas",
-        about: "Over what area sites are found.",
-    },
-    Known {
-        name: "bleed",
-        slot: Slot::of(Kind::Length),
-        default: "one spacing",
-        about: "How far beyond the domain sites are placed, not negative; 0 where tiles are counted.",
-    },
-    Known { name: "shape", slot: Slot::of(Kind::Shape), default: "rect()", about: "What tiles look like." },
-    Known {
-        name: "link",
-        slot: Slot::words(&["delaunay", "edges"]),
-        default: "edges for cell, else delaunay",
-        about: "Which tiles are neighbours.",
-    },
-    Known { name: "angle", slot: Slot::of(Kind::Angles), default: "bfs()", about: "How tiles are turned." },
-    Known {
-        name: "fill",
-        slot: Slot::of(Kind::Fill),
-        default: "",
-        about: "What is drawn in tiles; a list gives every layer its own.",
-    },
-    Known {
-        name: "k",
-        slot: Slot::of(Kind::Field),
-        default: "1",
-        about: "How many layers a tile has: a number or a field of numbers, 0 to 4.",
-    },
-    Known {
-        name: "darkness",
-        slot: Slot::of(Kind::Field),
-        default: "none",
-        about: "What share of the paper is covered, 0 to 1, instead of `k`; layers and spacing follow.",
-    },
-    Known {
-        name: "range",
-        slot: Slot::words(&["clip", "fit"]),
-        default: "clip",
-        about: "What becomes of a darkness that the tone does not print.",
-    },
-    Known {
-        name: "solid",
-        slot: Slot::of(Kind::Number),
-        default: "none",
-        about: "Tiles that ask for so much darkness are inked all over, above 0 to 1.",
-    },
-    Known {
-        name: "blend",
-        slot: Slot::words(&["step", "partial", "dither", "contour"]),
-        default: "step",
-        about: "What becomes of a fraction of `k`.",
-    },
-    Known {
-        name: "stack",
-        slot: Slot::words(&["cover", "through"]),
-        default: "cover for stamps, through for cells",
-        about: "Whether later tiles hide what lies under them.",
-    },
-    Known {
-        name: "over",
-        slot: Slot::words(&["print", "knockout"]),
-        default: "print",
-        about: "Whether the paint removes what lies under its tiles.",
-    },
-    Known {
-        name: "ground",
-        slot: Slot::or_words(Kind::Fill, &["nearest", "none"]),
-        default: "nearest under stamps that lie on each other, else none",
-        about: "What is drawn where no tile is.",
-    },
-    Known {
-        name: "edge",
-        slot: Slot::words(&["clip", "whole", "centre"]),
-        default: "clip",
-        about: "What becomes of tiles at the region's outline.",
-    },
-    Known { name: "hand", slot: Slot::of(Kind::Hand), default: "ruled", about: "How unevenly strokes are drawn." },
-];
 
 /// Properties without which nothing can be painted.
 const REQUIRED: [&str; 2] = ["place", "fill"];

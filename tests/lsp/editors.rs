@@ -46,7 +46,8 @@ fn the_grammar_for_editors_has_the_words_of_the_language() {
         let rules = &grammar["repository"][name];
         let pattern = if rule == 1 { rules["patterns"].to_string() } else { rules["match"].to_string() };
         for group in pattern.split("b(").skip(1).filter_map(|rest| rest.split_once(')')) {
-            for word in group.0.split('|') {
+            // What only looks ahead is no group of words.
+            for word in group.0.split('|').filter(|_| !group.0.starts_with('?')) {
                 assert!(known.contains(word) || reserved.contains(word), "`{word}` is no word of the language");
             }
         }

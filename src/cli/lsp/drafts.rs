@@ -5,6 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use lsp_types::Uri;
+
 use crate::cli::files::{self, FsLoader};
 use crate::cli::packages::Faults;
 use crate::loader::{LoadError, Loader, UnknownDependency};
@@ -80,6 +82,13 @@ pub(super) fn settled(path: &Path) -> PathBuf {
         (Some(Ok(folder)), Some(name)) => folder.join(name),
         _ => path.to_owned(),
     }
+}
+
+/// Where a text would lie that has no file yet.
+pub(super) fn unsaved(uri: &Uri, is_toml: bool) -> PathBuf {
+    let name: String = uri.as_str().chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
+    let folder = std::env::current_dir().unwrap_or_default();
+    settled(&folder.join(format!("{name}.{}", if is_toml { "toml" } else { "kake" })))
 }
 
 /// The folder of a text, for paths inside strings.

@@ -4,26 +4,27 @@
 //! that is under way. Questions about names wait for a look at the text as it is; completion makes do with the last one.
 //! Diagnostics of all looks are put together file by file, and taken back when nothing says them any more.
 
+mod telling;
+
 use std::collections::{BTreeMap, VecDeque};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
-use std::{fs, io};
 
 use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response};
-use lsp_types::{Diagnostic, DidChangeTextDocumentParams, DidOpenTextDocumentParams, Location, Range, Uri};
+use lsp_types::{Diagnostic, DidChangeTextDocumentParams, DidOpenTextDocumentParams, Uri};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::cli::Ended;
 use crate::diag;
-use crate::library::{MANIFEST, Manifest};
-use crate::lsp::{Encoding, Related, Snippets, Text, problem};
-use crate::span::{SourceId, Sources, Span, Syntax};
+use crate::library::MANIFEST;
+use crate::lsp::{Encoding, Related, Snippets, Text};
 use crate::stop::Stop;
 
-use super::drafts::{Texts, is_scene, settled};
+use super::drafts::{self, Texts, is_scene, settled};
 use super::worker::{About, Looked, Outcome, Worker};
 use super::{address, answers, wire};
 
@@ -220,8 +221,6 @@ impl Server {
         self.send(response);
     }
 
-    // ------------------------------------------------------------------------------------------- messages
-
     fn message(&mut self, message: Message) {
         match message {
             Message::Request(request) => self.request(request),
@@ -353,7 +352,7 @@ impl Server {
         let is_toml = document.language_id == "toml" || document.uri.as_str().ends_with(".toml");
         let path = match address::path(&document.uri) {
             Some(path) => settled(&path),
-            None => unsaved(&document.uri, is_toml),
+            None => drafts::unsaved(&document.uri, is_toml),
         };
         let kind = kind(&path, is_toml, text.as_str());
         let key = document.uri.as_str().to_owned();
@@ -587,144 +586,6 @@ impl Server {
     fn will_look(&self, uri: Option<&str>, scene: &Scene) -> bool {
         scene.due.is_some() || self.running.as_ref().is_some_and(|running| Some(running.about.as_str()) == uri)
     }
-
-    // ------------------------------------------------------------------------------------------- places
-
-    /// The address of a text of a scene. The text of a standard library is written to a file that can be read.
-    fn uri(&mut self, looked: &Looked, source: SourceId) -> Option<Uri> {
-        if let Some(path) = looked.place(source) {
-            return self.uri_of(path);
-        }
-        let source = looked.analysis.sources.get(source);
-        let name = source.name.strip_prefix("std:")?;
-        if !name.chars().all(char::is_alphanumeric) {
-            return None;
-        }
-        let folder = match &self.standard {
-            Some(folder) => folder,
-            None => self.standard.insert(tempfile::Builder::new().prefix("kake-std-").tempdir().ok()?),
-        };
-        let path = folder.path().join(format!("{name}.kake"));
-        if !path.is_file() {
-            fs::write(&path, source.text.as_bytes()).ok()?;
-            let mut permissions = fs::metadata(&path).ok()?.permissions();
-            permissions.set_readonly(true);
-            fs::set_permissions(&path, permissions).ok()?;
-        }
-        address::uri(&path)
-    }
-
-    fn uri_of(&self, path: &Path) -> Option<Uri> {
-        let open = self.buffers.values().find(|buffer| buffer.path == path);
-        open.map(|buffer| buffer.uri.clone()).or_else(|| address::uri(path))
-    }
-
-    fn location(&mut self, looked: &Looked, span: Span) -> Option<Location> {
-        let uri = self.uri(looked, span.source)?;
-        Some(Location { uri, range: self.range(&looked.analysis.sources, span) })
-    }
-
-    fn range(&self, sources: &Sources, span: Span) -> Range {
-        let text = Text::new(Arc::clone(&sources.get(span.source).text), self.client.encoding);
-        text.range(span.start as usize..span.end as usize)
-    }
-
-    // ------------------------------------------------------------------------------------------- diagnostics
-
-    /// What is wrong with a scene, by the address of the text that it stands in.
-    fn problems(&self, key: &str, looked: &Looked) -> BTreeMap<String, Vec<Diagnostic>> {
-        let sources = &looked.analysis.sources;
-        let texts: BTreeMap<SourceId, (Uri, Text)> = sources
-            .iter()
-            .filter_map(|(id, source)| {
-                let uri = self.uri_of(looked.place(id)?)?;
-                Some((id, (uri, Text::new(Arc::clone(&source.text), self.client.encoding))))
-            })
-            .collect();
-        let mut found = self.converted(key, &looked.analysis.diagnostics, &texts);
-        found.entry(key.to_owned()).or_default();
-        if let Some((path, diagnostics, sources)) = &looked.faults
-            && let Some(uri) = self.uri_of(path)
-        {
-            // The first text is the manifest of the scene's own library.
-            let texts = sources
-                .iter()
-                .take(1)
-                .map(|(id, source)| (id, (uri.clone(), Text::new(Arc::clone(&source.text), self.client.encoding))));
-            for (uri, list) in self.converted(key, diagnostics, &texts.collect()) {
-                found.entry(uri).or_default().extend(list);
-            }
-        }
-        found
-    }
-
-    fn converted(
-        &self,
-        key: &str,
-        diagnostics: &[diag::Diagnostic],
-        texts: &BTreeMap<SourceId, (Uri, Text)>,
-    ) -> BTreeMap<String, Vec<Diagnostic>> {
-        let place = |span: Span| {
-            let (uri, text) = texts.get(&span.source)?;
-            Some(Location { uri: uri.clone(), range: text.range(span.start as usize..span.end as usize) })
-        };
-        let mut found: BTreeMap<String, Vec<Diagnostic>> = BTreeMap::new();
-        let Some(buffer) = self.buffers.get(key) else { return found };
-        for diagnostic in diagnostics {
-            // What stands in no text that can be opened is told at the scene's beginning.
-            let beginning = || Location { uri: buffer.uri.clone(), range: Range::default() };
-            let Location { uri, range } = diagnostic.span.and_then(place).unwrap_or_else(beginning);
-            let told = problem(diagnostic, (&uri, range), self.client.related, &place);
-            found.entry(uri.as_str().to_owned()).or_default().push(told);
-        }
-        found
-    }
-
-    /// What is wrong with a library's manifest.
-    fn manifest(&self, key: &str) -> Vec<Diagnostic> {
-        let Some(buffer) = self.buffers.get(key) else { return Vec::new() };
-        let mut sources = Sources::new();
-        let source = sources.add(MANIFEST, Arc::clone(buffer.text.shared()), Syntax::Toml);
-        let (_, diagnostics) = Manifest::parse(source, buffer.text.as_str());
-        let texts = BTreeMap::from([(source, (buffer.uri.clone(), buffer.text.clone()))]);
-        self.converted(key, &diagnostics, &texts).into_values().flatten().collect()
-    }
-
-    /// Tells the editor what is wrong, file by file, and takes back what is so no longer.
-    /// Of the text that was looked at just now something is told in any case.
-    fn publish(&mut self, fresh: Option<&str>) {
-        let mut all: BTreeMap<String, Vec<Diagnostic>> = BTreeMap::new();
-        for (uri, list) in self.found.values().flatten() {
-            let told = all.entry(uri.clone()).or_default();
-            for diagnostic in list {
-                // Two scenes that import one file find the same there.
-                if !told.contains(diagnostic) {
-                    told.push(diagnostic.clone());
-                }
-            }
-        }
-        for uri in self.told.keys() {
-            all.entry(uri.clone()).or_default();
-        }
-        for (uri, diagnostics) in all {
-            let is_open = self.buffers.contains_key(&uri);
-            // An empty list says of an open text that it was looked at, and is not kept for others.
-            let is_news = self.told.get(&uri) != Some(&diagnostics);
-            match diagnostics.is_empty() && !is_open {
-                true => self.told.remove(&uri),
-                false => self.told.insert(uri.clone(), diagnostics.clone()),
-            };
-            if is_news || fresh == Some(uri.as_str()) {
-                let mut params = json!({ "uri": uri, "diagnostics": diagnostics });
-                if let (Some(version), Some(params)) =
-                    (self.buffers.get(&uri).map(|b| b.version), params.as_object_mut())
-                {
-                    params.insert("version".to_owned(), json!(version));
-                }
-                self.notify("textDocument/publishDiagnostics", params);
-            }
-        }
-    }
 }
 
 /// What an open text is.
@@ -735,11 +596,4 @@ fn kind(path: &Path, is_toml: bool, text: &str) -> BufferKind {
         (true, false) if is_scene(text) => BufferKind::Toml,
         (true, false) => BufferKind::Other,
     }
-}
-
-/// Where a text would lie that has no file yet.
-fn unsaved(uri: &Uri, is_toml: bool) -> PathBuf {
-    let name: String = uri.as_str().chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
-    let folder = std::env::current_dir().unwrap_or_default();
-    settled(&folder.join(format!("{name}.{}", if is_toml { "toml" } else { "kake" })))
 }
