@@ -161,7 +161,7 @@ fn targets(document: &str) -> Vec<String> {
 #[test]
 fn what_documents_point_to_is_there() {
     let others = ["CHANGELOG.md", "docs/decisions.md", "editors/README.md", "examples/data/SOURCES.md"];
-    let documents = DOCUMENTS.into_iter().chain(others);
+    let documents = DOCUMENTS.iter().copied().chain(others);
     for document in documents {
         let path = repository().join(document);
         let text = read(&path);
@@ -187,7 +187,7 @@ fn anchor(heading: &str) -> String {
 
 #[test]
 fn every_picture_is_shown_somewhere() {
-    let texts: String = DOCUMENTS.map(|document| read(&repository().join(document))).concat();
+    let texts: String = DOCUMENTS.iter().map(|document| read(&repository().join(document))).collect();
     let mut pictures = 0;
     for entry in fs::read_dir(repository().join("docs/pictures")).expect("docs/pictures is there") {
         let name = entry.expect("the folder can be read").file_name().to_string_lossy().into_owned();

@@ -21,8 +21,8 @@ const FINEST: u32 = 8;
 /// Width in pixels of the cells that a sheet is drawn in; narrower where pixels are finer.
 const CELL: usize = 512;
 
-/// The width in finer pixels that the thinnest pen should have.
-const WIDTH: f64 = 1.0;
+/// The width in finer pixels that the thinnest pen should have at least: the scan converter divides each again, by four.
+const WIDTH: f64 = 0.45;
 
 /// Where the marks of a drawing lie.
 #[derive(Debug)]
