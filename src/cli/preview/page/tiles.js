@@ -26,7 +26,6 @@ export class Tiles {
   #hide;
   #levels = new Map();
   #isDropped = false;
-
   #onLost;
 
   /** `onLost` is called when the server does not know the drawing any more. */
@@ -43,8 +42,11 @@ export class Tiles {
     const abort = new Promise((_, reject) => {
       signal?.addEventListener("abort", () => reject(signal.reason), { once: true });
     });
-    abort.catch(() => this.drop());
+    let isComing = true;
+    abort.catch(() => isComing && this.drop());
     await Promise.race([coming, abort]);
+    // Whoever gives up later gives up something else.
+    isComing = false;
     this.#put(sight);
   }
 
