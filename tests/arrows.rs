@@ -67,6 +67,7 @@ const ARROWS: [(&str, &[&str]); 28] = [
             "span",
             "stage",
             "stats",
+            "stop",
             "syntax",
             "wedge",
         ],

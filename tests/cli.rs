@@ -61,7 +61,7 @@ impl Desk {
         fs::read(self.path(file)).unwrap_or_else(|error| panic!("{file}: {error}"))
     }
 
-    fn files(&self) -> Vec<String> {
+    pub(crate) fn files(&self) -> Vec<String> {
         let entries = fs::read_dir(self.0.path()).expect("the folder can be read");
         let mut names: Vec<String> =
             entries.map(|entry| entry.expect("it can be read").file_name().to_string_lossy().into_owned()).collect();

@@ -19,6 +19,7 @@ mod ink;
 mod metrics;
 mod paper;
 mod preview;
+mod preview_server;
 mod repeat;
 mod statistics;
 mod support;
