@@ -112,12 +112,12 @@ struct Growth<'a> {
 }
 
 impl Growth<'_> {
-    /// Finds sites round the active ones until none is active.
+    /// Finds sites round the active ones until none is active, or an end is asked for.
     fn grow(&mut self) -> Result<(), Diagnostic> {
         let mut near = Near::new();
         // Rounding to f32 moves a distance by far less than this share of it.
         let surely_closer = (self.disk.radius * self.disk.radius * (1.0 - 1e-5)) as f32;
-        while !self.active.is_empty() {
+        while !self.active.is_empty() && !self.ground.stop.is_asked() {
             let pick = self.stream.below(self.active.len() as u64) as usize;
             let site = self.active[pick] as usize;
             let origin = self.points[site];
@@ -140,7 +140,7 @@ impl Growth<'_> {
 
     /// Offers a seed in every empty cell, and lets each that is taken grow.
     fn sow(&mut self) -> Result<(), Diagnostic> {
-        for row in 0..self.grid.rows {
+        for row in (0..self.grid.rows).take_while(|_| !self.ground.stop.is_asked()) {
             for column in 0..self.grid.columns {
                 if self.grid.cells[self.grid.index(column, row)] != EMPTY {
                     continue;
