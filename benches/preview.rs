@@ -19,7 +19,7 @@ const MOVES: usize = 30;
 /// A sheet of about 20,000 tiles.
 const LARGE: &str = "canvas { size: (300mm, 200mm) }
 seed 1
-param tile: length = 2.75mm in 2.7mm .. 2.8mm
+param tile: length = 2.2mm in 2.15mm .. 2.25mm
 tone sheet {
   place: poisson(radius: tile / 1.6)
   shape: rect(size: tile)
@@ -54,7 +54,7 @@ const MOVE: &str = "await new Promise((resolve) => {
 fn main() {
     let paper =
         fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/paper.kake")).expect("the example is there");
-    println!("{:<22} {:>7} {:>8} {:>8} {:>8}", "scene", "tiles", "median", "slowest", "server");
+    println!("{:<22} {:>7} {:>8} {:>8} {:>8} {:>9}", "scene", "tiles", "median", "slowest", "server", "requests");
     for (name, scene) in [("hello, with a slider", SMALL), ("paper.kake", &paper), ("20,000 tiles", LARGE)] {
         measure(name, scene);
     }
@@ -66,11 +66,14 @@ fn measure(name: &str, scene: &str) {
         println!("no Chromium is here");
         return;
     };
+    let before = page.requests.lock().expect("nothing panics").len();
     let mut times: Vec<f64> = (0..MOVES).map(|_| page.ask(MOVE).parse().expect("times are numbers")).collect();
     times.sort_by(f64::total_cmp);
+    // A move asks for the drawing and for its picture, or its tiles.
+    let requests = (page.requests.lock().expect("nothing panics").len() - before) / MOVES;
     let figures = page.ask("document.querySelector('#figures').textContent");
     let tiles = figures.split(' ').next().unwrap_or_default();
     let server = figures.rsplit(" · ").next().unwrap_or_default();
     let slowest = times.last().copied().unwrap_or_default();
-    println!("{name:<22} {tiles:>7} {:>5.0} ms {slowest:>5.0} ms {server:>8}", times[times.len() / 2]);
+    println!("{name:<22} {tiles:>7} {:>5.0} ms {slowest:>5.0} ms {server:>8} {requests:>9}", times[times.len() / 2]);
 }

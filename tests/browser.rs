@@ -3,6 +3,8 @@
 //!
 //! The browser is what `KAKE_CHROMIUM` names, otherwise Chromium or Chrome on the path.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use std::env;
 use std::fs;
 use std::io::{BufRead, BufReader};

@@ -21,7 +21,7 @@ seed 5
 
 /// Side of a tile
 param tile: length = 4mm in 2mm .. 8mm
-/// How the tiles are turned
+/// How the <b>tiles</b> are turned
 param rule = "bfs" in ["bfs", "random"]
 
 tone plain {
@@ -37,6 +37,7 @@ outline sheet pen 0.4mm
 "#;
 
 /// Opens the page; nothing where there is no browser and none is required.
+#[allow(clippy::print_stderr)]
 fn open(server: &Server) -> Option<Page> {
     let page = Page::open(&server.address, server.path("profile"));
     let is_required = env::var("KAKE_BROWSER").is_ok_and(|value| value == "required");
@@ -173,6 +174,10 @@ fn a_scene_is_edited_turned_broken_mended_and_saved() {
     let ink = page.ink();
     assert!((0.05..0.6).contains(&ink), "the picture has strokes, not {ink} of ink");
     let first = page.picture();
+
+    // A scene's words are words, whatever they look like.
+    let doc = "document.querySelector('[data-param=rule] .doc').textContent";
+    assert_eq!(page.ask(doc), "How the <b>tiles</b> are turned");
 
     // The file is saved by an editor.
     server.write(&SCENE.replace("pitch: 0.8mm", "pitch: 0.5mm"));

@@ -52,3 +52,28 @@ pub(super) const ASSETS: &[Asset] = &[
     asset!("view.js", SCRIPT),
     asset!("wish.js", SCRIPT),
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_file_of_the_page_is_served() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/src/cli/preview/page");
+        let files = std::fs::read_dir(folder).expect("the folder is there");
+        let names = files.map(|file| file.expect("the folder can be read").file_name().to_string_lossy().into_owned());
+        let mut there: Vec<String> = names.filter(|name| name != "index.html").collect();
+        there.sort();
+        assert_eq!(ASSETS.iter().map(|asset| asset.name).collect::<Vec<_>>(), there);
+    }
+
+    #[test]
+    fn texts_never_become_markup() {
+        for asset in ASSETS {
+            let text = String::from_utf8_lossy(asset.bytes);
+            for way in ["innerHTML", "outerHTML", "insertAdjacentHTML", "document.write", "eval("] {
+                assert!(!text.contains(way), "{}: {way}", asset.name);
+            }
+        }
+    }
+}

@@ -109,16 +109,19 @@ function numbers({ range, default: own }, label, give) {
     event.preventDefault();
     take(value + way * step * (event.shiftKey ? 10 : 1));
   });
+  const sign = make("span", { className: "unit" }, unit);
   const element = make(
     "div",
     { className: slider ? "slide" : "slide alone" },
     slider,
-    make("span", { className: "measure" }, number.input, unit ? make("span", { className: "unit" }, unit) : null),
+    make("span", { className: "measure" }, number.input, unit ? sign : null),
   );
   const put = (text) => {
     const value = inUnit(text, unit);
     const isOwnUnit = ["", unit].includes(quantity(text)?.unit);
     number.put(isOwnUnit ? text.trim().slice(0, text.trim().length - quantity(text).unit.length).trim() : text);
+    // A text with another unit says its own.
+    sign.hidden = !isOwnUnit;
     if (!slider) return;
     slider.disabled = value === null;
     if (value !== null) slider.value = value;

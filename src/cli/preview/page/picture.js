@@ -20,11 +20,10 @@ export class Picture {
   #sheet;
   #view;
   #content = null;
+  #onLost;
 
   /** The answer whose picture is shown, and which of its layers are not. */
   shown = null;
-
-  #onLost;
 
   /** `onLost` is called when the server does not know the drawing that is shown any more. */
   constructor(sheet, view, onLost) {

@@ -15,9 +15,6 @@ const FINEST = 10;
 /** How many tiles beyond the window's edge are kept. */
 const BEYOND = 2;
 
-/** How long the new picture's first tiles are waited for, in milliseconds, before they are shown as they come. */
-const WAIT = 2000;
-
 /** The level with at least as many pixels as the screen has, a little less being taken for enough. */
 export function levelFor(scale, ratio) {
   const z = Math.ceil(Math.log2(scale * ratio) - 0.2);
@@ -29,7 +26,6 @@ export class Tiles {
   #hide;
   #levels = new Map();
   #isDropped = false;
-
   #onLost;
 
   /** `onLost` is called when the server does not know the drawing any more. */
@@ -40,17 +36,17 @@ export class Tiles {
     this.element = make("div", { className: "tiles" });
   }
 
-  /** Waits for every tile in sight. */
+  /** Waits for every tile in sight: until then the picture before stays. */
   async load(sight, signal) {
     const coming = this.#bring(sight);
     const abort = new Promise((_, reject) => {
       signal?.addEventListener("abort", () => reject(signal.reason), { once: true });
     });
-    abort.catch(() => this.drop());
-    let timer = 0;
-    const late = new Promise((resolve) => (timer = setTimeout(resolve, WAIT)));
-    await Promise.race([coming, late, abort]);
-    clearTimeout(timer);
+    let isComing = true;
+    abort.catch(() => isComing && this.drop());
+    await Promise.race([coming, abort]);
+    // Whoever gives up later gives up something else.
+    isComing = false;
     this.#put(sight);
   }
 
