@@ -1,5 +1,7 @@
 //! `kake diff`: two files, revisions that the real git holds, and git calling it as a driver and as a tool.
 
+#![allow(clippy::print_stderr)]
+
 use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Output};
