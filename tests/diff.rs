@@ -1,5 +1,7 @@
 //! `kake diff`: two files, revisions that the real git holds, and git calling it as a driver and as a tool.
 
+#![allow(clippy::print_stderr)]
+
 use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Output};
@@ -182,7 +184,7 @@ fn a_parameter_that_one_side_lacks_is_set_on_the_other() {
 #[test]
 fn pictures_of_the_difference() {
     let desk = Desk::new();
-    desk.put("other.kake", &SCENE.replace("radius: 4mm", "radius: 5mm"));
+    desk.put("other.kake", &SCENE.replace("center: (6mm, 6mm)", "center: (8mm, 5mm)"));
     let outputs = ["-o", "{name}.png", "-o", "d.svg", "-o", "d.html"];
     desk.kake(&[&["scene.kake", "other.kake"][..], &outputs].concat()).ends(1);
     let png = fs::read(desk.path("other.png")).expect("{name} is the new scene's");
