@@ -5,7 +5,7 @@
 //!
 //! Names, values and mistakes come from lowering itself, which keeps a [`Survey`](crate::lower::Survey) when it is asked
 //! to, so that an editor is told what the compiler does. What fits a half-typed place is found from the tokens before it
-//! ([`context`]), for nothing of such a text need be whole, and from the tables of the vocabulary
+//! (see [`Context`]), for nothing of such a text need be whole, and from the tables of the vocabulary
 //! ([`reference`](crate::lower::reference)).
 
 mod analysis;
