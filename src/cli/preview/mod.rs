@@ -47,6 +47,13 @@ pub(super) struct PreviewArgs {
 }
 
 pub(super) fn run(arguments: &PreviewArgs) -> Ended {
+    let scene = &arguments.scene.scene;
+    // What cannot be opened at all is said before a browser shows it.
+    if scene != Path::new("-")
+        && let Err(error) = open(scene, arguments.scene.root.as_deref())
+    {
+        return report::cannot_open(error);
+    }
     match serve(arguments) {
         Ok(()) => Ended::Done,
         Err((words, ended)) => {
@@ -125,11 +132,6 @@ fn settings(arguments: &PreviewArgs) -> Result<Settings, (String, Ended)> {
     let given = arguments.scene.scene.clone();
     if given == Path::new("-") {
         return Err(("a preview follows a file; save the scene to one".to_owned(), Ended::Usage));
-    }
-    // What cannot be opened at all is said before a browser shows it.
-    if let Err(error) = open(&given, arguments.scene.root.as_deref()) {
-        let ended = report::cannot_open(error);
-        return Err(("there is nothing to preview".to_owned(), ended));
     }
     let scene = std::path::absolute(&given).map_err(|error| (plain(&error), Ended::Io))?;
     let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from("."));
