@@ -173,7 +173,7 @@ mod tests {
         let path = folder.path().join("scene.kake");
         fs::write(&path, "a").unwrap();
         let (watch, changes) = changes(&path);
-        let wait = || assert_eq!(changes.recv_timeout(Duration::from_secs(20)).unwrap(), [path.clone()]);
+        let wait = || assert_eq!(changes.recv_timeout(Duration::from_secs(20)).unwrap(), std::slice::from_ref(&path));
         fs::write(&path, "ab").unwrap();
         wait();
         let beside = folder.path().join("scene.kake~");
