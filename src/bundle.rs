@@ -17,6 +17,8 @@ use crate::loader;
 
 /// How the line behind the scene goes on after its comment sign; the scene's path follows as a JSON string.
 const HEAD: &str = " kake bundle 1 ";
+/// The last line, after the comment sign: a text without it was cut short on its way.
+const END: &str = " end of the bundle";
 /// How it begins, whatever the version.
 const ANY_HEAD: &str = " kake bundle ";
 
@@ -140,6 +142,7 @@ pub fn write(text: &str, sign: Sign, bundle: &Bundle) -> Result<String, BundleEr
             }
         }
     }
+    out += &format!("{sign}{END}\n");
     Ok(out)
 }
 
@@ -177,7 +180,8 @@ pub fn read(text: &str) -> Result<Option<Bundle>, BundleError> {
     let (scene, rest) = split(text);
     let Some(first) = rest.lines().next() else { return Ok(None) };
     let sign = if first.starts_with('#') { Sign::Hash } else { Sign::Slashes };
-    let mut reader = Reader { sign, bundle: Bundle::default(), known: BTreeSet::new(), open: None, bytes: 0 };
+    let mut reader =
+        Reader { sign, bundle: Bundle::default(), known: BTreeSet::new(), open: None, bytes: 0, has_ended: false };
     let before = scene.bytes().filter(|&byte| byte == b'\n').count();
     for (i, line) in rest.lines().enumerate() {
         let number = before + i + 1;
@@ -185,6 +189,10 @@ pub fn read(text: &str) -> Result<Option<Bundle>, BundleError> {
         read.map_err(|words| BundleError { line: Some(number), words })?;
     }
     reader.close().map_err(|(line, words)| BundleError { line: Some(line), words })?;
+    if !reader.has_ended {
+        let words = format!("the bundle was cut short: its last line, `{}{END}`, is missing", sign.text());
+        return Err(BundleError { line: None, words });
+    }
     Ok(Some(reader.bundle))
 }
 
@@ -196,6 +204,8 @@ struct Reader {
     open: Option<Open>,
     /// The bytes so far, as they stand in the text.
     bytes: usize,
+    /// Whether the last line was read.
+    has_ended: bool,
 }
 
 impl Reader {
@@ -219,6 +229,9 @@ impl Reader {
             return Ok(());
         }
         let strange = || "behind a bundle's first file nothing may stand but its files".to_owned();
+        if self.has_ended {
+            return Err("behind a bundle's last line nothing may stand".to_owned());
+        }
         let rest = line.strip_prefix(self.sign.text()).ok_or_else(strange)?;
         let content = |rest: &str| rest.strip_prefix(' ').unwrap_or(rest).to_owned();
         if let Some(rest) = rest.strip_prefix('|') {
@@ -228,7 +241,10 @@ impl Reader {
             return self.push(false, content(rest).trim());
         }
         self.close().map_err(|(_, words)| words)?;
-        if let Some(rest) = rest.strip_prefix(" file ") {
+        if rest == END {
+            self.has_ended = true;
+            Ok(())
+        } else if let Some(rest) = rest.strip_prefix(" file ") {
             self.file(rest, number)
         } else if let Some(rest) = rest.strip_prefix(" library ") {
             let (long, short) = rest.split_once(" is ").ok_or("a library has a name and another: \"a/b\" is \"b\"")?;
@@ -403,6 +419,8 @@ mod tests {
             (&["// file \"b\", base64, 2 bytes", "//: eA=="], "line 6: `b` has 1 bytes and not 2"),
             (&["// file \"b\", base64, 2 bytes", "//: !!"], "no base64"),
             (&["paint canvas with b"], "nothing may stand but its files"),
+            (&["// end of the bundle", "// file \"b\", text"], "behind a bundle's last line"),
+            (&["// file \"b\", text", "//| x"], "was cut short"),
             (&["// library \"a b\" is \"c\""], "no name of a library"),
         ] {
             let said = refused(lines);

@@ -218,7 +218,7 @@ fn swatch(tone: &Tone, shown: &Shown, picture: Option<&String>) -> Markup {
             figcaption {
                 @if !shown.label.is_empty() { (shown.label) " \u{b7} " }
                 @if let Ok(drawing) = &shown.picture {
-                    span.size { (format!("{:.0} mm wide", drawing.page.width.to_mm())) }
+                    span.size { (format!("{:.0}\u{a0}mm\u{a0}wide", drawing.page.width.to_mm())) }
                 }
             }
         }
@@ -279,7 +279,7 @@ fn painted(module: &Module, scene: &Painted, picture: Option<&String>) -> Markup
 fn settable(params: &[Param]) -> Markup {
     html! {
         table {
-            thead { tr { th { "parameter" } th { "type" } th { "default" } th { "may be" } } }
+            thead { tr { th { "parameter" } th { "type" } th { "default" } th { "allowed" } } }
             tbody {
                 @for param in params {
                     tr {

@@ -83,7 +83,7 @@ fn section(swatch: &Swatch) -> Markup {
                             figcaption {
                                 (kind)
                                 @if kind == "difference" {
-                                    span.key { " – " span.went { "went" } " " span.came { "came" } }
+                                    span.key { " – " span.went { "went" } " " span.came { "came" } " " span.stayed { "stayed" } }
                                 }
                             }
                         }

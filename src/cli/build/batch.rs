@@ -339,13 +339,10 @@ fn check_place(file: &Path, scene: &Path) -> Result<(), String> {
 }
 
 fn unknown(output: &Path, name: &str, axes: &[Vary]) -> String {
+    // Which of the two is the slip is not known: the name of the output, or that of what varies.
     let known = axes.iter().map(|axis| axis.name.as_str()).chain([NUMBER]);
-    let listed: Vec<String> = known.clone().map(|name| format!("{{{name}}}")).collect();
-    let hint = match crate::diag::did_you_mean(name, known) {
-        Some(hint) => hint,
-        None => format!("there are {}", listed.join(", ")),
-    };
-    format!("{}: nothing that varies is called `{name}`; {hint}", output.display())
+    let listed: Vec<String> = known.map(|name| format!("{{{name}}}")).collect();
+    format!("{}: nothing that varies is called `{name}`; there are {}", output.display(), listed.join(", "))
 }
 
 fn clash(output: &Path, [first, second]: [&Cell; 2], axes: &[Vary]) -> String {

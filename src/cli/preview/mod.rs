@@ -36,7 +36,7 @@ pub(super) struct PreviewArgs {
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     /// The port to serve on; by default one that is free
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = parse_port)]
     port: u16,
     /// Open the page in the browser
     #[arg(long)]
@@ -151,6 +151,10 @@ fn settings(arguments: &PreviewArgs) -> Result<Settings, (String, Ended)> {
         arguments: limits::written(&arguments.scene),
         output,
     })
+}
+
+fn parse_port(text: &str) -> Result<u16, String> {
+    text.parse().map_err(|_| "a port is a whole number from 0 to 65535, 0 for one that is free".to_owned())
 }
 
 /// Takes a port of the loopback address.

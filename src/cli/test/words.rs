@@ -22,7 +22,10 @@ fn line(swatch: &Swatch, width: usize, is_accepted: bool) -> String {
         (Outcome::Orphan, true) => "removed",
         (outcome, _) => outcome.word(),
     };
-    let said = swatch.outcome.to_string();
+    let said = match (swatch.outcome, is_accepted) {
+        (Outcome::New, true) => "it had no pin".to_owned(),
+        (outcome, _) => outcome.to_string(),
+    };
     let mut text = format!("{word:8}  {:width$}  {said}", swatch.name).trim_end().to_owned();
     text.push('\n');
     let shown = swatch.changes.get(..MOST).unwrap_or(&swatch.changes);
