@@ -29,6 +29,11 @@ pub const MOST: usize = 10_000;
 /// The longest path.
 const LONGEST_PATH: usize = 1024;
 
+/// The longest name of a file or folder, in bytes.
+const LONGEST_PART: usize = 255;
+/// Files that say what a library is: a bundle that brought one would say it of another's folder.
+const OURS: [&str; 2] = ["kake.toml", "kake.lock"];
+
 /// Characters of base64 on a line.
 const LINE: usize = 100;
 
@@ -116,6 +121,7 @@ pub fn write(text: &str, sign: Sign, bundle: &Bundle) -> Result<String, BundleEr
     if bundle.files.len() > MOST {
         return Err(refuse(format!("the scene reads {} files; a bundle holds {MOST}", bundle.files.len())));
     }
+    bundle.files.iter().try_for_each(|(path, _)| check(path)).map_err(refuse)?;
     let sign = sign.text();
     let (scene, _) = split(text);
     let mut out = scene.trim_end_matches('\n').to_owned();
@@ -180,8 +186,15 @@ pub fn read(text: &str) -> Result<Option<Bundle>, BundleError> {
     let (scene, rest) = split(text);
     let Some(first) = rest.lines().next() else { return Ok(None) };
     let sign = if first.starts_with('#') { Sign::Hash } else { Sign::Slashes };
-    let mut reader =
-        Reader { sign, bundle: Bundle::default(), known: BTreeSet::new(), open: None, bytes: 0, has_ended: false };
+    let mut reader = Reader {
+        sign,
+        bundle: Bundle::default(),
+        known: BTreeSet::new(),
+        folders: BTreeSet::new(),
+        open: None,
+        bytes: 0,
+        has_ended: false,
+    };
     let before = scene.bytes().filter(|&byte| byte == b'\n').count();
     for (i, line) in rest.lines().enumerate() {
         let number = before + i + 1;
@@ -199,8 +212,9 @@ pub fn read(text: &str) -> Result<Option<Bundle>, BundleError> {
 struct Reader {
     sign: Sign,
     bundle: Bundle,
-    /// The paths so far.
+    /// The paths so far, and the folders that they lead through, without capitals.
     known: BTreeSet<String>,
+    folders: BTreeSet<String>,
     open: Option<Open>,
     /// The bytes so far, as they stand in the text.
     bytes: usize,
@@ -220,7 +234,22 @@ impl Reader {
         if !loader::split(&self.bundle.scene).0.is_empty() || self.bundle.scene.contains(':') {
             return Err(format!("`{}` is no path of a scene", self.bundle.scene));
         }
-        self.known.insert(self.bundle.scene.clone());
+        let scene = self.bundle.scene.clone();
+        self.claim(&scene)
+    }
+
+    /// Takes a path, unless another stands in its way where capitals make no difference.
+    fn claim(&mut self, path: &str) -> Result<(), String> {
+        let path_key = path.to_lowercase();
+        let folders = || path_key.match_indices('/').map(|(at, _)| &path_key[..at]);
+        if self.known.contains(&path_key) {
+            return Err(format!("`{path}` is there twice"));
+        }
+        if self.folders.contains(&path_key) || folders().any(|folder| self.known.contains(folder)) {
+            return Err(format!("`{path}` is a file and a folder at once"));
+        }
+        self.folders.extend(folders().map(str::to_owned));
+        self.known.insert(path_key);
         Ok(())
     }
 
@@ -283,9 +312,7 @@ impl Reader {
         let (path, kind) = rest.split_at(end);
         let path = unquoted(path)?;
         check(&path)?;
-        if !self.known.insert(path.clone()) {
-            return Err(format!("`{path}` is there twice"));
-        }
+        self.claim(&path)?;
         if self.known.len() > MOST + 1 {
             return Err(format!("there are more than {MOST} files"));
         }
@@ -336,11 +363,27 @@ fn check(path: &str) -> Result<(), String> {
     if inside.split('/').any(|part| part == "..") || inside.starts_with('/') || inside.contains(['\\', ':']) {
         return Err(format!("`{shown}` leads out of the bundle"));
     }
-    let is_bad = |part: &str| part.is_empty() || part == "." || part.ends_with([' ', '.']);
-    if inside.split('/').any(is_bad) || inside.chars().any(char::is_control) {
+    // What begins with a point configures programs, git first of all, which has a second name on some systems.
+    let is_hidden = |part: &str| part.starts_with('.') || part.to_ascii_lowercase().starts_with("git~");
+    if inside.split('/').any(is_hidden) {
+        return Err(format!("`{shown}` is hidden: bundles hold no such files"));
+    }
+    let is_bad = |part: &str| part.is_empty() || part.len() > LONGEST_PART || part.ends_with([' ', '.']);
+    if inside.split('/').any(|part| is_bad(part) || is_device(part)) || inside.chars().any(char::is_control) {
         return Err(format!("`{shown}` is no path of a file"));
     }
+    if inside.rsplit('/').next().is_some_and(|name| OURS.iter().any(|ours| name.eq_ignore_ascii_case(ours))) {
+        return Err(format!("`{shown}` is nothing that a scene reads"));
+    }
     Ok(())
+}
+
+/// Whether Windows takes a name for a device.
+fn is_device(part: &str) -> bool {
+    let stem = part.split('.').next().unwrap_or_default().to_ascii_lowercase();
+    let numbered =
+        |name: &str| stem.strip_prefix(name).is_some_and(|n| n.len() == 1 && n.as_bytes()[0].is_ascii_digit());
+    matches!(&*stem, "con" | "prn" | "aux" | "nul") || numbered("com") || numbered("lpt")
 }
 
 #[cfg(test)]
@@ -410,6 +453,14 @@ mod tests {
             (&["// file \"std:../x\", text"], "leads out"),
             (&["// file \"a//b.kake\", text"], "no path of a file"),
             (&["// file \"a\\u0000.kake\", text"], "no path of a file"),
+            (&["// file \".git/config\", text"], "is hidden"),
+            (&["// file \"ink:a/.GIT/config\", text"], "is hidden"),
+            (&["// file \"GIT~1/config\", text"], "is hidden"),
+            (&["// file \"a/con.txt\", text"], "no path of a file"),
+            (&["// file \"lib/kake.toml\", text"], "nothing that a scene reads"),
+            (&["// file \"tones\", text", "// file \"tones/w.kake\", text"], "a file and a folder"),
+            (&["// file \"tones/w.kake\", text", "// file \"Tones\", text"], "a file and a folder"),
+            (&["// file \"t/w.kake\", text", "// file \"T/w.kake\", text"], "there twice"),
             (&["// file \"b\", text", "//| x", "// file \"b\", text"], "line 8: `b` is there twice"),
             (&["// file \"a.kake\", text"], "there twice"),
             (&["// file b, text"], "no path between quotes"),

@@ -28,6 +28,9 @@ const FILES: [(&str, &str); 11] = [
     ("swatches/weave.kake", include_str!("new/swatches/weave.kake")),
 ];
 
+/// What the name of a draft begins and ends with.
+const DRAFT: [&str; 2] = [".kake-", ".part"];
+
 #[derive(Debug, Args)]
 pub(super) struct NewArgs {
     /// The folder to be made; it may be there already, if it is empty
@@ -48,7 +51,8 @@ pub(super) fn run(arguments: &NewArgs) -> Ended {
         }
     };
     let is_there = match fs::read_dir(folder) {
-        Ok(mut entries) => match entries.next() {
+        // A draft that was broken off is nobody's work.
+        Ok(mut entries) => match entries.find(|entry| !entry.as_ref().is_ok_and(is_draft)) {
             None => true,
             Some(_) => {
                 eprintln!("kake: {} is not empty; nothing was written", folder.display());
@@ -71,15 +75,22 @@ pub(super) fn run(arguments: &NewArgs) -> Ended {
     }
     let shown = folder.display();
     eprintln!("{name} is ready in {shown}: three tones with their swatches, pinned. Next:");
-    let go = if folder == Path::new(".") { String::new() } else { format!("cd {shown} && ") };
+    let quote = if shown.to_string().contains(' ') { "\"" } else { "" };
+    let go = if folder == Path::new(".") { String::new() } else { format!("cd {quote}{shown}{quote} && ") };
     eprintln!("  {go}git init && git config diff.kake.command \"kake diff\"");
     eprintln!("  change a tone, look with `kake preview swatches/weave.kake --open`, then run `kake test`");
     Ended::Done
 }
 
+/// Whether something was left behind by a `kake new` that was broken off.
+fn is_draft(entry: &fs::DirEntry) -> bool {
+    let name = entry.file_name().to_string_lossy().into_owned();
+    name.starts_with(DRAFT[0]) && name.ends_with(DRAFT[1])
+}
+
 /// What the library is called.
 fn name(arguments: &NewArgs) -> Result<String, String> {
-    const RULE: &str = "names have 2 to 64 letters from a to z, digits, `-` and `_`, and begin with a letter";
+    const RULE: &str = "names have 2 to 64 plain letters, digits, `-` and `_`, and begin with a letter";
     let good = |name: &str| match name.to_ascii_lowercase().as_str() {
         "std" => Err("`std:` names the libraries that come with the program".to_owned()),
         _ if is_name(name) => Ok(name.to_owned()),
@@ -99,7 +110,10 @@ fn make(folder: &Path, name: &str) -> Result<(), String> {
     let failed = |error: io::Error| plain(&error);
     fs::create_dir_all(folder).map_err(failed)?;
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".kake-").suffix(".part");
+    for left in fs::read_dir(folder).map_err(failed)?.flatten().filter(is_draft) {
+        fs::remove_dir_all(left.path()).map_err(failed)?;
+    }
+    builder.prefix(DRAFT[0]).suffix(DRAFT[1]);
     permissions(&mut builder);
     let draft = builder.tempdir_in(folder).map_err(failed)?;
     for (file, text) in FILES {

@@ -105,7 +105,7 @@ impl Reader {
             [("name", "name = \"ink\""), ("version", "version = \"0.1.0\""), ("edition", "edition = 1")]
         {
             if self.is_sound && entries.iter().all(|entry| entry.key != key) {
-                let message = format!("`[library]` needs a `{key}`");
+                let message = format!("`[library]` lacks its `{key}`");
                 self.diagnostics.push(Diagnostic::error(Code::Missing, table.span, message).hint(example));
             }
         }
@@ -173,7 +173,7 @@ impl Reader {
     fn is_name(&mut self, name: &str, span: Span) -> bool {
         let is_good = is_name(name);
         if !is_good {
-            let hint = "names have 2 to 64 letters from a to z, digits, `-` and `_`, and begin with a letter";
+            let hint = "names have 2 to 64 plain letters, digits, `-` and `_`, and begin with a letter";
             self.wrong(span, format!("`{}` is no name of a library", name.escape_debug()), hint);
         }
         is_good

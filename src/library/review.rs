@@ -198,7 +198,7 @@ impl Review {
             (count > 0).then(|| format!("{count} {word}"))
         });
         let counted: Vec<String> = counted.collect();
-        let n = self.swatches.len();
+        let n = self.swatches.iter().filter(|swatch| swatch.outcome != Outcome::Orphan).count();
         let swatches = if n == 1 { "1 swatch".to_owned() } else { format!("{n} swatches") };
         if counted.is_empty() { swatches } else { format!("{swatches}: {}", counted.join(", ")) }
     }

@@ -140,12 +140,16 @@ fn walk(folder: &Path, from: &Path, found: &mut Vec<File>) -> io::Result<()> {
         for entry in entries {
             let entry = entry?;
             let (path, kind) = (entry.path(), entry.file_type()?);
-            if is_foreign(&entry.file_name().to_string_lossy()) {
+            // Editors keep locks and copies under names that begin with a point.
+            let name = entry.file_name().to_string_lossy().into_owned();
+            if is_foreign(&name) || name.starts_with('.') {
                 continue;
             }
+            // Pipes and sockets are no scenes, and would be waited for; a link that leads nowhere is a broken swatch.
+            let is_other = fs::metadata(&path).is_ok_and(|found| !found.is_file());
             if kind.is_dir() {
                 folders.push(path);
-            } else {
+            } else if !is_other {
                 found.extend(swatch(folder, path));
             }
         }
