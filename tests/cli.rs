@@ -756,6 +756,37 @@ fn completions_help_and_version_are_results() {
 }
 
 #[test]
+fn what_the_scene_reads_is_not_overwritten() {
+    let desk = Desk::new();
+    desk.quietly(&["build", "scene.kake", "-o", "light.png"]);
+    let light = desk.get("light.png");
+    desk.put(
+        "traced.kake",
+        "canvas { size: (12mm, 12mm) }
+tone shade { place: grid(spacing: 3mm) fill: lines(pitch: 1mm) k: 4 * image(\"light.png\", fit: canvas) }
+paint canvas with shade
+",
+    );
+    desk.kake(&["build", "traced.kake", "-o", "light.png"]).refused(2, "light.png is read by the scene");
+    assert_eq!(desk.get("light.png"), light);
+    desk.kake(&["build", "light.png", "-o", "light.png", "--watch"]).refused(2, "built again for ever");
+    assert_eq!(desk.get("light.png"), light);
+    desk.quietly(&["build", "light.png", "-o", "light.png"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_are_not_waited_for() {
+    let desk = Desk::new();
+    let made = Command::new("mkfifo").arg(desk.path("pipe.kake")).status().expect("there are pipes");
+    assert!(made.success());
+    for arguments in [&["check", "pipe.kake"][..], &["build", "pipe.kake", "--watch"], &["preview", "pipe.kake"]] {
+        desk.kake(arguments).refused(3, "it is not a file");
+    }
+    desk.kake(&["check", "/dev/zero"]).refused(3, "it is not a file");
+}
+
+#[test]
 fn every_command_has_a_manual_page() {
     let desk = Desk::new();
     let page = desk.kake(&["man"]).out();

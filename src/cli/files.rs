@@ -83,6 +83,13 @@ impl FsLoader {
         aliases
     }
 
+    /// Whether a file was read, or asked for, so far.
+    pub(super) fn has_read(&self, file: &Path) -> bool {
+        let Ok(file) = file.canonicalize() else { return false };
+        let asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
+        asked.keys().any(|read| read.canonicalize().is_ok_and(|read| read == file))
+    }
+
     /// Every file that mattered so far, the libraries' manifests included: when one of them changes, so may the picture.
     pub(super) fn followed(&self) -> Stamps {
         let mut stamps = self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone();
@@ -204,7 +211,7 @@ pub(super) fn open(scene: &Path, root: Option<&Path>) -> Result<Opened, OpenErro
         None => folder.ancestors().find(|dir| dir.join(MANIFEST).is_file()).unwrap_or(&folder).to_owned(),
     };
     if is_picture(&full) {
-        let bytes = fs::read(&full).map_err(|error| failed(scene, &error))?;
+        let bytes = read_file(&full).map_err(|error| failed(scene, &error))?;
         return picture(&bytes, &root, scene.display().to_string());
     }
     let Ok(inside) = full.strip_prefix(&root) else {
@@ -231,12 +238,24 @@ pub(super) fn open(scene: &Path, root: Option<&Path>) -> Result<Opened, OpenErro
     Ok(Opened { loader, path, picture: None })
 }
 
+/// The bytes of a file. Pipes would be waited for, and devices have no end.
+pub(super) fn read_file(full: &Path) -> io::Result<Vec<u8>> {
+    let kind = fs::metadata(full)?;
+    if kind.is_dir() {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
+    if !kind.is_file() {
+        return Err(io::Error::other("it is not a file"));
+    }
+    if kind.len() > LARGEST {
+        return Err(io::Error::other("it is larger than 1 GiB"));
+    }
+    fs::read(full)
+}
+
 /// The bytes of a file that may be a bundle: no other is read before it is asked for.
 fn bundled(full: &Path) -> io::Result<Option<Arc<[u8]>>> {
-    if fs::metadata(full)?.len() > LARGEST {
-        return Ok(None);
-    }
-    let bytes = fs::read(full)?;
+    let bytes = read_file(full)?;
     let is_bundle = std::str::from_utf8(&bytes).is_ok_and(|text| !bundle::split(text).1.is_empty());
     Ok(is_bundle.then(|| bytes.into()))
 }

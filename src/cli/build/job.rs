@@ -88,6 +88,10 @@ impl<'a> Job<'a> {
         if self.form == Form::Pattern && !repeats {
             return Done::fault(words + "kake: a pattern needs a canvas that repeats: `canvas { … repeat: true }`\n");
         }
+        if let Some((target, _)) = self.outputs.iter().find(|(target, _)| self.opened.loader.has_read(target)) {
+            words += &format!("kake: {} is read by the scene; name another output\n", target.display());
+            return Done { words, ended: Ended::Usage, drawing: None };
+        }
         let (ended, more) = self.write(&compiled, &drawing, progress);
         Done { words: words + &more, ended, drawing: Some(drawing) }
     }

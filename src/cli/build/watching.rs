@@ -34,8 +34,16 @@ pub(super) fn run(arguments: &BuildArgs) -> Ended {
         }
     };
     // A scene that was never there is a slip of the command line rather than one that went.
-    if !scene.exists() {
+    if !scene.is_file() {
         return open(scene, arguments.scene.root.as_deref()).map_or_else(report::cannot_open, |_| Ended::Io);
+    }
+    let itself = asked(arguments).into_iter().find(|output| match (output.canonicalize(), scene.canonicalize()) {
+        (Ok(output), Ok(scene)) => output == scene,
+        _ => false,
+    });
+    if let Some(output) = itself {
+        eprintln!("kake: {} would be built again for ever; name another output", output.display());
+        return Ended::Usage;
     }
     let mut why = String::new();
     loop {

@@ -19,6 +19,7 @@ use super::command::command;
 use super::diagnostics::listed;
 use super::pictures::{Picture, points};
 use super::session::{Made, Seed, Session, Unmade, Wanted, locked};
+use super::write_back::is_locked;
 use crate::syntax::edit;
 
 /// SVG of so many bytes at most is shown as it is; what is larger is shown by tiles.
@@ -157,7 +158,8 @@ pub(super) fn draw(session: &Session, wanted: &Wanted, stop: &Stop, progress: Pr
         "diagnostics": listed(&lowered.diagnostics, &lowered.sources),
         "sources": sources(&lowered.sources),
         "command": command(session, &config),
-        "writable": opened.picture.is_none(),
+        "writable": opened.picture.is_none()
+            && !opened.loader.place(&opened.path).is_some_and(|file| is_locked(&file)),
     });
     merge(&mut answer, rest);
     Ok(answer)

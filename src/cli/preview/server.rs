@@ -8,7 +8,7 @@ use std::convert::Infallible;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use axum::body::{Body, Bytes};
+use axum::body::{Body, Bytes, to_bytes};
 use axum::extract::{Path, Query, Request, State};
 use axum::http::header::{
     CACHE_CONTROL, CONTENT_SECURITY_POLICY, CONTENT_TYPE, HOST, HeaderName, HeaderValue, ORIGIN, REFERRER_POLICY,
@@ -60,6 +60,9 @@ pub(super) struct Served {
     pub(super) session: Arc<Session>,
     pub(super) port: u16,
 }
+
+/// The most bytes of words about a request that was refused.
+const LONGEST_REFUSAL: usize = 4096;
 
 /// Every address of a preview.
 pub(super) fn router(served: Served) -> Router {
@@ -113,7 +116,7 @@ impl IntoResponse for Failed {
 /// Lets our page through, and nobody else; says in every answer what a browser may do with it.
 async fn guard(State(served): State<Served>, request: Request, next: Next) -> Response {
     let mut response = match may(&served, request.method(), request.uri().path(), request.headers()) {
-        Ok(()) => next.run(request).await,
+        Ok(()) => in_our_words(next.run(request).await).await,
         Err(words) => Failed::new(StatusCode::FORBIDDEN, words).into_response(),
     };
     let headers = response.headers_mut();
@@ -123,6 +126,17 @@ async fn guard(State(served): State<Served>, request: Request, next: Next) -> Re
     headers.insert(RESOURCE_POLICY, HeaderValue::from_static("same-origin"));
     headers.entry(CACHE_CONTROL).or_insert(HeaderValue::from_static("no-store"));
     response
+}
+
+/// An answer as the page reads it: what was refused before it came to us is said in JSON too.
+async fn in_our_words(response: Response) -> Response {
+    let status = response.status();
+    let is_json = response.headers().get(CONTENT_TYPE).is_some_and(|kind| kind.as_bytes() == b"application/json");
+    if is_json || !(status.is_client_error() || status.is_server_error()) {
+        return response;
+    }
+    let said = to_bytes(response.into_body(), LONGEST_REFUSAL).await.unwrap_or_default();
+    Failed::new(status, String::from_utf8_lossy(&said)).into_response()
 }
 
 /// Whether a request is our page's.

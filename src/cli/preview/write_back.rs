@@ -3,11 +3,13 @@
 //! Nothing is written unless the file is as it was drawn, and what comes out is a scene without fault.
 
 use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
 use std::sync::Arc;
 
 use serde::Deserialize;
 
-use crate::cli::files::{FsLoader, plain, write_beside};
+use crate::cli::files::{FsLoader, plain, read_file, write_beside};
 use crate::diag::Diagnostic;
 use crate::loader::{LoadError, Loader, UnknownDependency};
 use crate::lower::{LowerConfig, lower};
@@ -61,6 +63,12 @@ impl Loader for Draft<'_> {
     }
 }
 
+/// Whether somebody has taken away the permission to write a file. A new file could take its place all the same, but
+/// whoever locks a scene means it.
+pub(super) fn is_locked(file: &Path) -> bool {
+    fs::metadata(file).is_ok_and(|kind| kind.permissions().readonly())
+}
+
 /// Writes values and seed into the scene; what was written, by name.
 pub(super) fn write_back(session: &Session, writing: &Writing, stop: &Stop) -> Result<Vec<String>, Refused> {
     let changed = || {
@@ -76,7 +84,10 @@ pub(super) fn write_back(session: &Session, writing: &Writing, stop: &Stop) -> R
         return Err(Refused::Fault("the scene lies inside a picture, which is not written into".to_owned()));
     };
     let read =
-        || std::fs::read(&place).map_err(|error| Refused::Io(format!("the scene cannot be read: {}", plain(&error))));
+        || read_file(&place).map_err(|error| Refused::Io(format!("the scene cannot be read: {}", plain(&error))));
+    if is_locked(&place) {
+        return Err(Refused::Fault("the scene's file may only be read; it was not written".to_owned()));
+    }
     let bytes = read()?;
     if decode_utf8(&bytes).ok() != Some(&*text) {
         return Err(changed());
