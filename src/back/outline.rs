@@ -157,6 +157,20 @@ impl Marks<'_> {
         }
     }
 
+    /// The width of its widest stroke or dot, in pixels; infinite for areas.
+    pub(super) fn width(&self, scale: Scale) -> f64 {
+        let mm = match self {
+            Self::Lines { pen, .. } | Self::Polyline { pen, .. } | Self::Curves { pen, .. } => pen.to_mm(),
+            Self::Tapers { tapers, range: [from, to] } => {
+                let strokes = (*from..*to).filter_map(|i| tapers.stroke(i));
+                strokes.flat_map(|(_, widths)| widths).fold(0.0, |widest, &width| width.max(widest))
+            }
+            Self::Dots { radius, .. } => radius.to_mm() * 2.0,
+            Self::Area(_) => f64::INFINITY,
+        };
+        mm * scale.x.max(scale.y)
+    }
+
     /// Gives parts whose strokes hardly overlap: those side by side stay together, those that cross do not.
     pub(super) fn parts(self, mut take: impl FnMut(Self)) {
         match self {

@@ -24,6 +24,9 @@ pub use window::{Index, Window, fitting, render as render_window};
 const TILE_WIDTH: usize = 2_048;
 /// Height of a tile in pixels.
 const TILE_HEIGHT: usize = 256;
+/// The width in pixels below which strokes and dots are filled by exact areas, where that is wished: the parts that wider
+/// ones are made of overlap by too much.
+const THIN: f64 = 2.0;
 /// Strokes, curves or dots that are filled as one path. Few enough that a path's box stays small.
 const TOGETHER: usize = 32;
 
@@ -204,12 +207,12 @@ struct Brush {
     mask: Option<Mask>,
     builder: PathBuilder,
     outliner: Outliner,
-    /// What strokes and dots are filled with, where it is not tiny-skia.
+    /// What thin strokes and dots are filled with, where it is not tiny-skia.
     cover: Option<Cover>,
 }
 
 impl Brush {
-    /// One that covers exactly what strokes and dots cover, where others count samples.
+    /// One that covers exactly what thin strokes and dots cover, where others count samples.
     fn exact() -> Self {
         Self { cover: Some(Cover::default()), ..Self::default() }
     }
@@ -241,7 +244,9 @@ impl Brush {
                 let rule = self.outliner.outline(marks, tile, &mut builder);
                 let Some(path) = builder.finish() else { return };
                 match (&mut self.cover, rule) {
-                    (Some(cover), FillRule::Winding) => cover.fill(&path, size, mask.data_mut()),
+                    (Some(cover), FillRule::Winding) if marks.width(tile.scale) < THIN => {
+                        cover.fill(&path, size, mask.data_mut())
+                    }
                     _ => mask.fill_path(&path, rule, true, Transform::identity()),
                 }
                 let bounds = path.bounds();
@@ -257,7 +262,7 @@ impl Brush {
             };
             for &item in group {
                 let marks = items[item as usize].marks;
-                if is_exact {
+                if is_exact && marks.width(tile.scale) < THIN {
                     marks.parts(&mut fill);
                 } else {
                     fill(marks);

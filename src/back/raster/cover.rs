@@ -138,3 +138,43 @@ impl Cover {
         }
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use tiny_skia::PathBuilder;
+
+    use super::*;
+
+    /// What a ring covers of each pixel of a tile of four by three.
+    fn covered(ring: &[(f32, f32)]) -> Vec<u8> {
+        let mut path = PathBuilder::new();
+        path.move_to(ring[0].0, ring[0].1);
+        ring[1..].iter().for_each(|&(x, y)| path.line_to(x, y));
+        path.close();
+        let mut mask = vec![0; 12];
+        Cover::default().fill(&path.finish().unwrap(), [4, 3], &mut mask);
+        mask
+    }
+
+    #[test]
+    fn shares_are_areas() {
+        // Half of a pixel's width and half of its height.
+        let square = covered(&[(1.5, 0.5), (3.0, 0.5), (3.0, 2.0), (1.5, 2.0)]);
+        assert_eq!(square, [0, 64, 128, 0, 0, 128, 255, 0, 0, 0, 0, 0]);
+        // A triangle over all of the first row: its lower side falls by a pixel over four.
+        let triangle = covered(&[(0.0, 0.0), (4.0, 0.0), (4.0, 1.0)]);
+        assert_eq!(triangle, [32, 96, 159, 223, 0, 0, 0, 0, 0, 0, 0, 0]);
+    }
+
+    #[test]
+    fn what_lies_beside_the_tile_is_cut_off() {
+        let all = covered(&[(-50.0, -60.0), (70.0, -60.0), (70.0, 80.0), (-50.0, 80.0)]);
+        assert_eq!(all, [255; 12]);
+        assert_eq!(covered(&[(-5.0, 0.0), (-1.0, 0.0), (-1.0, 3.0), (-5.0, 3.0)]), [0; 12]);
+        assert_eq!(covered(&[(5.0, 0.0), (9.0, 0.0), (9.0, 3.0), (5.0, 3.0)]), [0; 12]);
+        // The diagonal enters at the left and leaves at the right in the middle of a row.
+        let slanted = covered(&[(-4.0, 0.0), (8.0, 3.0), (8.0, 9.0), (-4.0, 9.0)]);
+        assert_eq!(slanted, [0, 0, 0, 0, 223, 159, 96, 32, 255, 255, 255, 255]);
+    }
+}

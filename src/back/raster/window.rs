@@ -239,12 +239,9 @@ mod tests {
         let whole = render_whole(&drawing);
         let found = render(&drawing, &Index::new(&drawing), &window(10.0, [0, 0], drawing.page.pixels), |_| true);
         assert_eq!((found.width, found.height, &found.format), (whole.width, whole.height, &whole.format));
-        // The picture counts samples where the window computes areas: edges differ by what samples are off, and all in
-        // all there is as much ink.
-        let far = found.data.iter().zip(&whole.data).filter(|(a, b)| a.abs_diff(**b) > 64).count();
-        assert!(far * 1_000 < whole.data.len(), "{far} of {}", whole.data.len());
-        let [found, wanted] = [&found, &whole].map(|picture| picture.data.iter().map(|&v| f64::from(v)).sum::<f64>());
-        assert!((found / wanted - 1.0).abs() < 0.005, "{found} instead of {wanted}");
+        // The picture is cut into other cells, and what is cut off changes a level here and there.
+        let far = found.data.iter().zip(&whole.data).filter(|(a, b)| a.abs_diff(**b) > 3).count();
+        assert!(far * 10_000 < whole.data.len(), "{far} of {}", whole.data.len());
     }
 
     #[test]
