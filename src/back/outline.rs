@@ -22,6 +22,8 @@ const FLATTENING: f64 = 0.04;
 const FAR: f64 = 1e7;
 /// How far, in pixels, a mark may reach out of its tile before it is cut.
 const MARGIN: f64 = 4_096.0;
+/// The tangent of the angle up to which strokes run the same way.
+const ALIKE: f64 = 0.2;
 /// What is added and taken away again to round to 1/256: 1.5 times 2^44, where neighbouring numbers are that far apart.
 const ROUNDER: f64 = 26_388_279_066_624.0;
 
@@ -152,6 +154,61 @@ impl Marks<'_> {
             }
             Self::Dots { radius, centres } => centres.iter().fold(Rect::EMPTY, around).grown(radius.to_mm()),
             Self::Area(rings) => rings.iter().flatten().fold(Rect::EMPTY, around),
+        }
+    }
+
+    /// The width of its widest stroke or dot, in pixels; infinite for areas.
+    pub(super) fn width(&self, scale: Scale) -> f64 {
+        let mm = match self {
+            Self::Lines { pen, .. } | Self::Polyline { pen, .. } | Self::Curves { pen, .. } => pen.to_mm(),
+            Self::Tapers { tapers, range: [from, to] } => {
+                let strokes = (*from..*to).filter_map(|i| tapers.stroke(i));
+                strokes.flat_map(|(_, widths)| widths).fold(0.0, |widest, &width| width.max(widest))
+            }
+            Self::Dots { radius, .. } => radius.to_mm() * 2.0,
+            Self::Area(_) => f64::INFINITY,
+        };
+        mm * scale.x.max(scale.y)
+    }
+
+    /// Gives parts whose strokes hardly overlap: those side by side stay together, those that cross do not.
+    pub(super) fn parts(self, mut take: impl FnMut(Self)) {
+        match self {
+            Self::Lines { pen, cap, lines } => {
+                let parts = lines.chunk_by(|before, after| are_alike(Some(*before), Some(*after)));
+                parts.for_each(|lines| take(Self::Lines { pen, cap, lines }));
+            }
+            Self::Curves { pen, cap, curves, range } => {
+                let ends = |i| ends(curves.chain(i));
+                alike(range, ends, |range| take(Self::Curves { pen, cap, curves, range }));
+            }
+            Self::Tapers { tapers, range } => {
+                let ends = |i| tapers.stroke(i).and_then(|(spine, _)| ends(spine));
+                alike(range, ends, |range| take(Self::Tapers { tapers, range }));
+            }
+            Self::Polyline { .. } | Self::Dots { .. } | Self::Area(_) => take(self),
+        }
+    }
+}
+
+/// The first and the last point of a stroke.
+fn ends(points: &[Point]) -> Option<[Point; 2]> {
+    Some([*points.first()?, *points.last()?])
+}
+
+/// Whether strokes between these points run nearly the same way, or against each other.
+fn are_alike(one: Option<[Point; 2]>, other: Option<[Point; 2]>) -> bool {
+    let (Some([a, b]), Some([c, d])) = (one, other) else { return false };
+    (b - a).cross(d - c).abs() <= ALIKE * (b - a).dot(d - c).abs()
+}
+
+/// Cuts a range where a stroke does not run as the one before it.
+fn alike([from, to]: [usize; 2], ends: impl Fn(usize) -> Option<[Point; 2]>, mut take: impl FnMut([usize; 2])) {
+    let mut start = from;
+    for i in from + 1..=to {
+        if i == to || !are_alike(ends(i - 1), ends(i)) {
+            take([start, i]);
+            start = i;
         }
     }
 }

@@ -6,22 +6,27 @@
 //! what the scan converter resolves, so that neighbouring tiles agree about a mark that both of them hold. Bands of
 //! tiles are drawn by several threads; what they draw does not depend on how many there are.
 
+mod cover;
 mod window;
 
 use rayon::prelude::*;
-use tiny_skia::{Mask, PathBuilder, Transform};
+use tiny_skia::{FillRule, Mask, PathBuilder, Transform};
 
 pub use super::inking::Format;
 use super::inking::Inking;
 use super::outline::{Marks, Outliner, Scale, Tile};
 use crate::drawing::{Curves, Drawing, Layer};
 use crate::scene::Colour;
+use cover::Cover;
 pub use window::{Index, Window, fitting, render as render_window};
 
 /// Width of a tile in pixels; the scan converter works on up to 8191.
 const TILE_WIDTH: usize = 2_048;
 /// Height of a tile in pixels.
 const TILE_HEIGHT: usize = 256;
+/// The width in pixels below which strokes and dots are filled by exact areas, where that is wished: the parts that wider
+/// ones are made of overlap by too much.
+const THIN: f64 = 2.0;
 /// Strokes, curves or dots that are filled as one path. Few enough that a path's box stays small.
 const TOGETHER: usize = 32;
 
@@ -202,9 +207,16 @@ struct Brush {
     mask: Option<Mask>,
     builder: PathBuilder,
     outliner: Outliner,
+    /// What thin strokes and dots are filled with, where it is not tiny-skia.
+    cover: Option<Cover>,
 }
 
 impl Brush {
+    /// One that covers exactly what thin strokes and dots cover, where others count samples.
+    fn exact() -> Self {
+        Self { cover: Some(Cover::default()), ..Self::default() }
+    }
+
     /// Draws the items of one tile; `lay` is given the coverage of one group on a run of a row at a time.
     fn paint(
         &mut self,
@@ -222,15 +234,21 @@ impl Brush {
             self.mask = Mask::new(width, height);
         }
         let Some(mask) = &mut self.mask else { return };
+        let is_exact = self.cover.is_some();
         let groups = of_tile.chunk_by(|&a, &b| items[a as usize].group == items[b as usize].group);
         for group in groups {
             let Some(&first) = group.first() else { continue };
             let mut dirty: Option<[usize; 4]> = None;
-            for &item in group {
+            let mut fill = |marks: Marks<'_>| {
                 let mut builder = std::mem::take(&mut self.builder);
-                let rule = self.outliner.outline(items[item as usize].marks, tile, &mut builder);
-                let Some(path) = builder.finish() else { continue };
-                mask.fill_path(&path, rule, true, Transform::identity());
+                let rule = self.outliner.outline(marks, tile, &mut builder);
+                let Some(path) = builder.finish() else { return };
+                match (&mut self.cover, rule) {
+                    (Some(cover), FillRule::Winding) if marks.width(tile.scale) < THIN => {
+                        cover.fill(&path, size, mask.data_mut())
+                    }
+                    _ => mask.fill_path(&path, rule, true, Transform::identity()),
+                }
                 let bounds = path.bounds();
                 let clamp = |at: f32, end: usize| (at.max(0.0) as usize).min(end);
                 let [left, top] = [clamp(bounds.left().floor(), size[0]), clamp(bounds.top().floor(), size[1])];
@@ -241,6 +259,14 @@ impl Brush {
                     Some([l, t, r, b]) => [l.min(left), t.min(top), r.max(right), b.max(bottom)],
                 });
                 self.builder = path.clear();
+            };
+            for &item in group {
+                let marks = items[item as usize].marks;
+                if is_exact && marks.width(tile.scale) < THIN {
+                    marks.parts(&mut fill);
+                } else {
+                    fill(marks);
+                }
             }
             let Some([left, top, right, bottom]) = dirty else { continue };
             let group = items[first as usize].group as usize;

@@ -3,8 +3,8 @@
 //!
 //! The page is a sheet of pixels of one size, counted from its top left corner, and a window is a rectangle of them.
 //! Windows agree with each other at their borders, whatever they are: the sheet is drawn in cells that do not depend on
-//! them. Where pens
-//! are thinner than a pixel, several finer pixels are drawn for each and averaged, or hatching would turn into bands.
+//! them. What strokes cover of a pixel is computed exactly, or hatching would turn into bands where pens are thin; where
+//! they are so thin that many strokes share a pixel, several finer pixels are drawn for each and averaged.
 
 use rayon::prelude::*;
 
@@ -21,8 +21,9 @@ const FINEST: u32 = 8;
 /// Width in pixels of the cells that a sheet is drawn in; narrower where pixels are finer.
 const CELL: usize = 512;
 
-/// The width in finer pixels that the thinnest pen should have at least: the scan converter divides each again, by four.
-const WIDTH: f64 = 0.45;
+/// The width in finer pixels that the thinnest pen should have at least. Strokes cover exactly what they cover however thin
+/// they are, but how several of them share a pixel is only guessed.
+const WIDTH: f64 = 0.25;
 
 /// Where the marks of a drawing lie.
 #[derive(Debug)]
@@ -98,7 +99,7 @@ pub fn render(drawing: &Drawing, index: &Index, window: &Window, is_shown: impl 
         rest = after;
         top += down;
     }
-    bands.into_par_iter().for_each_init(Brush::default, |brush, (top, out)| {
+    bands.into_par_iter().for_each_init(Brush::exact, |brush, (top, out)| {
         let size = cell.map(|side| side * finer);
         let mut fine = Vec::new();
         for left in (corner[0] / cell[0] * cell[0]..corner[0] + width).step_by(cell[0]) {

@@ -49,7 +49,7 @@ pub(super) fn thumb(picture: &Picture, side: u32, hidden: &[usize]) -> Result<Ve
 }
 
 fn encoded(pixels: &Pixels) -> Result<Vec<u8>, String> {
-    png::encode(pixels).map_err(|error| error.to_string())
+    png::encode_quickly(pixels).map_err(|error| error.to_string())
 }
 
 /// Makes what lies beyond a width and height transparent.
