@@ -166,7 +166,7 @@ fn broken_swatches_leave_the_others_alone() {
             "changed   ripple   the drawing is the same, but the pinned picture is missing or damaged",
             "new       sub/new  it has no pin yet",
             "changed   weave    the pin cannot be read",
-            "ink 0.1.0: 6 swatches: 2 changed, 2 new, 1 broken, 1 orphan",
+            "ink 0.1.0: 5 swatches: 2 changed, 2 new, 1 broken, 1 orphan",
         ]
     );
     assert!(ran.stderr.contains("kake::unknown-tone") && ran.stderr.contains("kake::pin"), "{}", ran.stderr);

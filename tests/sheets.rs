@@ -118,7 +118,7 @@ fn command_lines_that_cannot_be_meant_are_refused() {
     let two = "--vary=pen=0.2mm,0.3mm";
     for (arguments, words) in [
         (&[two, "-o", "one.svg"][..], "{pen}"),
-        (&[two, "-o", "{pan}.svg"], "did you mean `pen`?"),
+        (&[two, "-o", "{pan}.svg"], "called `pan`; there are {pen}, {n}"),
         (&[two, "-o", "-"], "standard output"),
         (&[two, "-o", "no/{pen}.svg"], "no folder no"),
         (&[two, "--set", "pen=0.1mm"], "set and varied"),
