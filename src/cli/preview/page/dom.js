@@ -48,7 +48,7 @@ export function isTyping(target) {
 /** A number for people: so many digits, thousands parted. */
 export function figure(value, digits = 3) {
   const least = Number.isInteger(value) ? 1 : digits;
-  return new Intl.NumberFormat("en-GB", { minimumSignificantDigits: least, maximumSignificantDigits: digits }).format(value);
+  return new Intl.NumberFormat("en-GB", { minimumSignificantDigits: least, maximumSignificantDigits: digits }).format(value).replace("-", "−");
 }
 
 /** A whole number for people. */

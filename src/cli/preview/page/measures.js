@@ -183,7 +183,7 @@ function correlogram(r, title) {
     "svg",
     { class: "correlogram", viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": title },
     words({ x: width / 2, y: 15, class: "head" }, title),
-    ...[0, ...levels].map((level) => words({ x: left - 6, y: y(level) + 4 }, figure(level, 2).replace("-", "−"), "end")),
+    ...[0, ...levels].map((level) => words({ x: left - 6, y: y(level) + 4 }, figure(level, 2), "end")),
     ...distances.map((k) => words({ x: x(k), y: height - 19 }, String(k))),
     words({ x: (left + width - right) / 2, y: height - 4 }, "distance in links"),
     ...r.map((value, i) => drawn("line", { class: "stem", x1: x(i + 1), x2: x(i + 1), y1: y(0), y2: y(value) })),

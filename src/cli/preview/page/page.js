@@ -224,10 +224,10 @@ api.listen({
 
 // ---------------------------------------------------------------------------------------------------------- the view
 
-function moved({ scale }) {
+function moved({ scale, size }) {
   picture.place();
   $("zoom-text").textContent = `${Math.round((scale / REAL) * 100)} %`;
-  const { length, words } = ruleOf(scale, 140);
+  const { length, words } = ruleOf(scale, Math.min(140, size.width / 4));
   $("rule-bar").style.width = `${length * scale}px`;
   $("rule-text").textContent = words;
 }
