@@ -12,8 +12,8 @@ export const OVERLAYS = [
   ["contrast", "Contrast", "How far neighbours are turned apart"],
 ];
 
-/** Whether a layer is an overlay's: those come and go with the buttons above, and are many. */
-const isOverlay = ({ groups }) => groups.some((group) => group.startsWith("overlay "));
+/** Whether a layer is an overlay's or the veil below them: those come and go with the buttons above, and are many. */
+const isOverlay = ({ name, groups }) => groups.some((group) => group.startsWith("overlay ")) || (name === "overlay veil" && groups.length === 0);
 
 /** Layers by names that stay when others come or go: the second of a name has a number. Layers of overlays have none. */
 export function keysOf(layers) {
