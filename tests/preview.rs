@@ -208,6 +208,8 @@ fn a_scene_is_edited_turned_broken_mended_and_saved() {
     page.click("[data-overlay=angles]");
     page.until_command("--overlay angles");
     let angles = page.until_other_picture("the angles were shown", &moved);
+    page.until("the picture is the last", "document.querySelector('#state').dataset.kind === 'ready'");
+    assert_eq!(page.ask("document.querySelectorAll('#layers [data-layer]').length"), "2", "overlays are no layers");
     page.click("[data-overlay=angles]");
     assert_eq!(page.until_other_picture("the angles were hidden", &angles), moved);
 
@@ -260,15 +262,20 @@ fn one_of_sixteen_is_chosen_and_written_into_the_scene() {
     // A value that is none is told beside its box, and the picture stays.
     let tile = "[data-param=tile] .box";
     page.ask(&format!("(document.querySelector('{tile}').focus(), document.querySelector('{tile}').select())"));
-    page.tab.type_str("12").expect("text can be typed");
+    page.tab.type_str("12 mm").expect("text can be typed");
     page.key("Enter");
     page.until("the value is refused", "document.querySelector('[data-param=tile] .fault')?.hidden === false");
     assert!(page.ask("document.querySelector('[data-param=tile] .fault').textContent").contains("12mm"));
+    assert_eq!(page.ask(&format!("document.querySelector('{tile}').value")), "12 mm", "it stays as it was typed");
     assert_eq!(page.picture(), chosen);
+    // The command line is still that of the picture.
+    assert_eq!(page.command(), "kake build scene.kake --seed 10 -o scene.svg");
+    // A space before the unit is no mistake.
     page.ask(&format!("document.querySelector('{tile}').select()"));
-    page.tab.type_str("6").expect("text can be typed");
+    page.tab.type_str("6 mm").expect("text can be typed");
     page.key("Enter");
     page.until_command("--set tile=6mm");
+    assert_eq!(page.ask(&format!("document.querySelector('{tile}').value")), "6");
     let wide = page.until_other_picture("a value was typed", &chosen);
 
     // The link holds it all.
@@ -325,6 +332,19 @@ fn the_keyboard_is_enough() {
     page.key("[");
     page.until_command("--seed 9");
 
+    // What is no seed is told below the box, once, and stays in it.
+    page.ask("(document.querySelector('#seed').focus(), document.querySelector('#seed').select())");
+    page.tab.type_str("-4").expect("text can be typed");
+    page.key("Enter");
+    page.key("Enter");
+    page.until("the seed is refused", "!document.querySelector('#seed-fault').hidden");
+    assert_eq!(page.ask("document.querySelectorAll('.toast').length"), "0");
+    assert_eq!(page.ask("document.querySelector('#seed').value"), "-4");
+    page.key("Escape");
+    page.until("the seed is back", "document.querySelector('#seed').value === '9'");
+    assert_eq!(page.ask("document.querySelector('#seed-fault').hidden"), "true");
+    page.ask("document.activeElement.blur()");
+
     // Zoom, measures, source, and the picture into a file.
     let scale = page.ask("document.querySelector('#zoom-text').textContent");
     page.key("1");
@@ -332,8 +352,9 @@ fn the_keyboard_is_enough() {
     page.key("f");
     page.until("the page fits", &format!("document.querySelector('#zoom-text').textContent === {scale:?}"));
     page.key("m");
-    page.until("the figures are there", "document.querySelector('.measures td')?.textContent > 0");
-    page.until("the correlogram is there", "document.querySelector('.chart img')?.naturalWidth > 0");
+    page.until("the figures are there", "document.querySelector('.measures .value')?.textContent > 0");
+    page.until("the correlogram is there", "document.querySelector('.chart .correlogram circle') !== null");
+    page.until("the charts are there", "document.querySelector('.chart img')?.naturalWidth > 0");
     page.key("s");
     page.until("the source is there", "document.querySelectorAll('.code .line').length > 10");
     page.key_with(ModifierKey::Ctrl, "s");
@@ -384,4 +405,42 @@ fn the_page_waits_for_its_server() {
     page.until("the page is back", "document.querySelector('#state')?.dataset.kind === 'ready'");
     page.until("the banner is gone", "document.querySelector('#banner').hidden");
     assert_eq!(page.picture(), picture);
+}
+
+#[test]
+fn a_fitted_page_lies_under_nothing() {
+    let scene = SCENE.replace("(40mm, 30mm)", "(40mm, 60mm)");
+    let server = Server::start(&scene);
+    let Some(page) = open(&server) else { return };
+    let gap = |above: &str, below: &str| {
+        let edge =
+            |selector: &str, side: &str| format!("document.querySelector('{selector}').getBoundingClientRect().{side}");
+        format!("{} <= {}", edge(above, "bottom"), edge(below, "top"))
+    };
+    page.until("the scale bar lies below the page", &gap("#sheet", "#rule"));
+    server.write(&scene.replace("rect(size: tile)", "rekt(size: tile)"));
+    page.until("the mistake is told", "!document.querySelector('#banner').hidden");
+    page.until("the banner lies above the page", &gap("#banner", "#sheet"));
+    page.until("the scale bar lies below the page still", &gap("#sheet", "#rule"));
+}
+
+#[test]
+fn before_the_first_picture_nothing_is_there_to_be_turned() {
+    let server = Server::start(SCENE);
+    let Some(page) = open(&server) else { return };
+    server.write(&SCENE.replace("rect(size: tile)", "rekt(size: tile)"));
+    page.until("the mistake is told", "!document.querySelector('#banner').hidden");
+    page.ask("location.reload()");
+    page.until(
+        "the page has no picture",
+        "document.body?.dataset.state === 'empty' && document.querySelector('#state').dataset.kind === 'faulty'",
+    );
+    let seen = "['#rule', '#zoom-in', '#seed', '#overlays', '#layers'].filter((name) => \
+                document.querySelector(name).getClientRects().length > 0)";
+    assert_eq!(page.ask(&format!("{seen}.join()")), "");
+    assert_eq!(page.ask("document.querySelector('[data-save=svg]').disabled"), "true");
+    server.write(SCENE);
+    page.until("the picture is there", "document.body.dataset.state === 'drawn'");
+    assert_eq!(page.ask(&format!("{seen}.length")), "5");
+    page.until("it can be saved", "!document.querySelector('[data-save=svg]').disabled");
 }

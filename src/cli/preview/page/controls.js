@@ -1,5 +1,5 @@
-// The controls of parameters, one for each kind of value. A control gives an element and `put(text)`, and calls `give(text)`
-// when the artist has chosen another text.
+// The controls of parameters, one for each kind of value. A control gives an element and `put(text, isFaulty)`, and calls
+// `give(text)` when the artist has chosen another text.
 
 import { make } from "./dom.js";
 import { colour, colourText, inUnit, niceStep, quantity, toStep } from "./values.js";
@@ -77,8 +77,20 @@ function numbers({ range, default: own }, label, give) {
     if (!range) return text;
     return Number(text) >= range.to ? String(range.to) : Number(text) <= range.from ? String(range.from) : text;
   };
-  const withUnit = (text) => (quantity(text)?.unit === "" ? text.trim() + unit : text);
-  const number = box(label, (text) => give(withUnit(text)), { inputMode: "decimal" });
+  // Artists part a number from its unit or leave the unit out; the language wants `5mm`.
+  const joined = (text) => {
+    const read = quantity(text);
+    return read ? text.replace(/\s+/g, "") + (read.unit === "" ? unit : "") : text;
+  };
+  let typed = { text: "", given: null };
+  const number = box(
+    label,
+    (text) => {
+      typed = { text, given: joined(text) };
+      give(typed.given);
+    },
+    { inputMode: "decimal" },
+  );
   const slider = range
     ? make("input", { type: "range", min: range.from, max: range.to, step, "aria-labelledby": label })
     : null;
@@ -116,12 +128,16 @@ function numbers({ range, default: own }, label, give) {
     slider,
     make("span", { className: "measure" }, number.input, unit ? sign : null),
   );
-  const put = (text) => {
+  const put = (text, isFaulty) => {
     const value = inUnit(text, unit);
-    const isOwnUnit = ["", unit].includes(quantity(text)?.unit);
-    number.put(isOwnUnit ? text.trim().slice(0, text.trim().length - quantity(text).unit.length).trim() : text);
-    // A text with another unit says its own.
-    sign.hidden = !isOwnUnit;
+    const own = quantity(text)?.unit;
+    const isOwnUnit = own === unit || own === "";
+    // What is wrong stays as it was typed, so that it can be seen and mended.
+    const isTyped = isFaulty && text === typed.given;
+    const shown = isTyped ? typed.text : isOwnUnit ? text.trim().slice(0, text.trim().length - own.length).trim() : text;
+    number.put(shown);
+    // A text with a unit says its own.
+    sign.hidden = isTyped ? quantity(shown)?.unit !== "" : !isOwnUnit;
     if (!slider) return;
     slider.disabled = value === null;
     if (value !== null) slider.value = value;

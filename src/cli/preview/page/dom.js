@@ -21,14 +21,17 @@ export function make(tag, properties = {}, ...children) {
 
 const SVG = "http://www.w3.org/2000/svg";
 
+/** Makes an element of an SVG with these attributes. */
+export function drawn(tag, attributes = {}, ...children) {
+  const element = document.createElementNS(SVG, tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
 /** One of the page's icons. */
 export function icon(name) {
-  const svg = document.createElementNS(SVG, "svg");
-  const use = document.createElementNS(SVG, "use");
-  use.setAttribute("href", `#i-${name}`);
-  svg.setAttribute("aria-hidden", "true");
-  svg.append(use);
-  return svg;
+  return drawn("svg", { "aria-hidden": "true" }, drawn("use", { href: `#i-${name}` }));
 }
 
 /** Shows another icon in a button. */
@@ -45,7 +48,7 @@ export function isTyping(target) {
 /** A number for people: so many digits, thousands parted. */
 export function figure(value, digits = 3) {
   const least = Number.isInteger(value) ? 1 : digits;
-  return new Intl.NumberFormat("en-GB", { minimumSignificantDigits: least, maximumSignificantDigits: digits }).format(value);
+  return new Intl.NumberFormat("en-GB", { minimumSignificantDigits: least, maximumSignificantDigits: digits }).format(value).replace("-", "−");
 }
 
 /** A whole number for people. */

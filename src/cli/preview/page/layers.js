@@ -1,6 +1,6 @@
 // What of the drawing is shown: layers, one paint alone, overlays.
 
-import { count, icon, make, setIcon } from "./dom.js";
+import { icon, make, plural, setIcon } from "./dom.js";
 
 /** The overlays, what they are called and what they show. */
 export const OVERLAYS = [
@@ -12,10 +12,15 @@ export const OVERLAYS = [
   ["contrast", "Contrast", "How far neighbours are turned apart"],
 ];
 
-/** Layers by names that stay when others come or go: the second of a name has a number. */
+/** Whether a layer is an overlay's or the veil below them: those come and go with the buttons above, and are many. */
+const isOverlay = ({ name, groups }) => groups.some((group) => group.startsWith("overlay ")) || (name === "overlay veil" && groups.length === 0);
+
+/** Layers by names that stay when others come or go: the second of a name has a number. Layers of overlays have none. */
 export function keysOf(layers) {
   const seen = new Map();
-  return layers.map(({ name }) => {
+  return layers.map((layer) => {
+    if (isOverlay(layer)) return null;
+    const { name } = layer;
     const times = (seen.get(name) ?? 0) + 1;
     seen.set(name, times);
     return times === 1 ? name : `${name} (${times})`;
@@ -72,7 +77,8 @@ export class Layers {
     all.addEventListener("click", () => wish.show({ hidden: [] }));
   }
 
-  put({ layers }) {
+  put({ layers: all }) {
+    const layers = all.filter((layer) => !isOverlay(layer));
     const signature = JSON.stringify(layers.map(({ name, ink }) => [name, ink]));
     if (signature !== this.#signature) {
       const keys = keysOf(layers);
@@ -80,7 +86,7 @@ export class Layers {
       this.#list.replaceChildren(...this.#rows.map((row) => row.element).reverse());
       this.#signature = signature;
     }
-    layers.forEach(({ marks }, i) => (this.#rows[i].marks.textContent = count(marks)));
+    layers.forEach(({ marks }, i) => (this.#rows[i].marks.textContent = plural(marks, "mark")));
     this.refresh(this.#wish.now);
   }
 

@@ -23,7 +23,7 @@ document.title = `${api.scene} · kake preview`;
 $("scene-name").textContent = api.scene;
 
 const wish = new Wish();
-const view = new View($("viewport"), moved, pointed);
+const view = new View($("viewport"), moved, pointed, covered);
 const picture = new Picture($("sheet"), view, redraw);
 const params = new Params($("params"), wish);
 const overlays = new Overlays($("overlays"), wish);
@@ -50,7 +50,11 @@ let isSourceOpened = false;
 
 async function show(drawn, hidden, signal) {
   await picture.show(drawn, hiddenNumbers(drawn.layers, hidden), signal);
+  const isFirst = document.body.dataset.state !== "drawn";
   $("viewport").dataset.state = "drawn";
+  document.body.dataset.state = "drawn";
+  // The scale bar has come.
+  if (isFirst) view.refit();
 }
 
 function busy() {
@@ -79,7 +83,7 @@ function answer(said, asked) {
   problems(said.diagnostics);
   source.put(said);
   seedBox();
-  if (said.command !== null) $("command-text").textContent = said.command;
+  commandOf(said);
   variations.from(said.seed);
   if (said.ok) {
     state("ready", "Ready", said.steps.map(([name, ms]) => `${name} ${ms} ms`).join("\n"));
@@ -99,6 +103,14 @@ function answer(said, asked) {
   }
   forgetUnknown(said, asked);
   buttons();
+}
+
+/** Shows the command line of the picture that is shown: while a value is wrong that of the last good one. */
+function commandOf({ ok, command }) {
+  if (ok) $("command-text").textContent = command;
+  const what = ok ? "this very picture" : "the last good picture, which is shown";
+  $("command").title = `Copy the command line that makes ${what} (C)`;
+  $("command").toggleAttribute("data-old", !ok);
 }
 
 /** Values for parameters that the scene does not have, from an old link or an edited scene, are let go. */
@@ -171,6 +183,7 @@ wish.addEventListener("change", ({ detail: { isOfDrawing, isOfPicture } }) => {
   params.refresh();
   overlays.refresh(now);
   layers.refresh(now);
+  seedFault(false);
   seedBox();
   buttons();
   keepLink();
@@ -211,13 +224,24 @@ api.listen({
 
 // ---------------------------------------------------------------------------------------------------------- the view
 
-function moved({ scale }) {
+function moved({ scale, size }) {
   picture.place();
   $("zoom-text").textContent = `${Math.round((scale / REAL) * 100)} %`;
-  const { length, words } = ruleOf(scale, 140);
+  const { length, words } = ruleOf(scale, Math.min(140, size.width / 4));
   $("rule-bar").style.width = `${length * scale}px`;
   $("rule-text").textContent = words;
 }
+
+/** How much of the picture's window lies under the banner above, and under the scale bar and the buttons below. */
+function covered() {
+  const [banner, rule] = [$("banner"), $("rule")];
+  const gap = 10;
+  const bottom = rule.offsetHeight > 0 ? $("stage").clientHeight - rule.offsetTop + gap : 0;
+  return { top: banner.hidden ? 0 : banner.offsetTop + banner.offsetHeight + gap, bottom };
+}
+
+// A banner that comes, goes or says more takes another part of the window.
+new ResizeObserver(() => view.refit()).observe($("banner"));
 
 function pointed(point) {
   $("place").textContent = point ? `${point.x.toFixed(2)}, ${point.y.toFixed(2)} mm` : "";
@@ -254,7 +278,8 @@ function toggleSource() {
 
 function seedBox() {
   const box = $("seed");
-  if (document.activeElement !== box || !("edited" in box.dataset)) box.value = wish.now.seed ?? last?.seed ?? "";
+  const isTyped = document.activeElement === box && "edited" in box.dataset;
+  if (!isTyped && $("seed-fault").hidden) box.value = wish.now.seed ?? last?.seed ?? "";
   $("seed-reset").hidden = wish.now.seed === null;
 }
 
@@ -262,6 +287,7 @@ function buttons() {
   $("undo").disabled = !wish.canUndo;
   $("redo").disabled = !wish.canRedo;
   $("reset-all").disabled = Object.keys(wish.now.sets).length === 0;
+  for (const button of document.querySelectorAll("#vary, [data-save]")) button.disabled = !picture.shown;
   $("write").disabled = !wish.isChanged || !last?.ok || !last.writable;
 }
 
@@ -273,10 +299,20 @@ function takeSeed() {
   const box = $("seed");
   delete box.dataset.edited;
   const seed = toSeed(box.value);
+  const isFaulty = box.value.trim() !== "" && seed === null;
+  seedFault(isFaulty);
+  if (isFaulty) return;
   if (box.value.trim() === "") wish.seed(null);
-  else if (seed === null) toast("A seed is a whole number from 0 to 18446744073709551615", "warning");
   else if (seed !== seedNow()) wish.seed(seed);
   seedBox();
+}
+
+/** Says under the seed's box what is wrong with the text in it, which stays. */
+function seedFault(isFaulty) {
+  const fault = $("seed-fault");
+  fault.hidden = !isFaulty;
+  fault.textContent = isFaulty ? "A seed is a whole number from 0 to 18446744073709551615" : "";
+  $("seed").setAttribute("aria-invalid", String(isFaulty));
 }
 
 const rollSeed = () => wish.change({ seed: Math.floor(Math.random() * 100_000) });
@@ -316,7 +352,11 @@ async function write() {
 
 const said = (isDone, words) => toast(isDone ? words : "The browser does not let the page copy", isDone ? "done" : "error");
 
-const copyCommand = async () => said(await copy($("command-text").textContent), "The command line is copied");
+async function copyCommand() {
+  if (!picture.shown) return;
+  const of = last?.ok === false ? " of the last good picture" : "";
+  said(await copy($("command-text").textContent), `The command line${of} is copied`);
+}
 
 const share = async () => said(await copy(location.origin + location.pathname + toFragment(wish.now)), "The link is copied");
 
@@ -359,9 +399,15 @@ $("seed").addEventListener("change", takeSeed);
 $("seed").addEventListener("keydown", (event) => {
   const way = { ArrowUp: 1, ArrowDown: -1 }[event.key];
   if (event.key === "Enter") takeSeed();
+  if (event.key === "Escape") {
+    delete event.target.dataset.edited;
+    seedFault(false);
+    seedBox();
+  }
   if (!way) return;
   event.preventDefault();
   delete event.target.dataset.edited;
+  seedFault(false);
   wish.seed(seedAfter(seedNow(), way));
 });
 

@@ -27,13 +27,14 @@ export class Params {
     const signature = JSON.stringify(params.map(({ value, ...rest }) => rest));
     if (signature !== this.#signature) this.#make(params);
     this.#signature = signature;
-    this.refresh();
     for (const [name, row] of this.#rows) {
       const faults = diagnostics.filter((diagnostic) => diagnostic.file === `--set ${name}`);
+      row.faulty = faults.length > 0 ? sets[name] : null;
       row.fault.replaceChildren(...faults.map(faultWords));
       row.fault.hidden = faults.length === 0;
       row.element.toggleAttribute("data-faulty", faults.length > 0);
     }
+    this.refresh();
   }
 
   /** The value that a parameter has when nothing is wished. */
@@ -52,7 +53,7 @@ export class Params {
     for (const param of this.list) {
       const row = this.#rows.get(param.name);
       const text = sets[param.name] ?? this.own(param);
-      row.control.put(text);
+      row.control.put(text, text === row.faulty);
       const isOwn = !(param.name in sets);
       row.element.toggleAttribute("data-changed", !isOwn);
       row.reset.disabled = isOwn;
@@ -91,11 +92,11 @@ export class Params {
       made.element,
       fault,
     );
-    this.#rows.set(name, { element, control: made, reset, fault });
+    this.#rows.set(name, { element, control: made, reset, fault, faulty: null });
     return element;
   }
 }
 
 function faultWords({ message, hint }) {
-  return make("span", {}, message, hint ? make("em", {}, ` ${hint}`) : null);
+  return make("span", {}, message, hint ? make("em", {}, hint) : null);
 }

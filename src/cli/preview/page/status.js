@@ -23,10 +23,11 @@ export function banner(words, lead = "") {
   $("viewport").toggleAttribute("data-old", isShown);
 }
 
-/** A message that goes by itself. */
+/** A message that goes by itself; the same words said again take the place of those before. */
 export function toast(words, kind = "done") {
+  for (const other of [...$("toasts").children]) if (other.dataset.words === words) other.remove();
   const close = make("button", { className: "tool small", "aria-label": "Close", onclick: () => element.remove() }, icon("close"));
-  const element = make("div", { className: "toast", "data-kind": kind }, make("span", {}, words), close);
+  const element = make("div", { className: "toast", "data-kind": kind, "data-words": words }, make("span", {}, words), close);
   $("toasts").append(element);
   while ($("toasts").children.length > 4) $("toasts").firstElementChild.remove();
   setTimeout(() => element.remove(), STAY);
@@ -40,7 +41,8 @@ export function figures({ tiles, marks, page, bytes, ms, steps }) {
   words.push(`${ms.toFixed(ms < 10 ? 1 : 0)} ms`);
   const element = $("figures");
   element.textContent = words.join(" · ");
-  element.title = steps.map(([name, spent]) => `${name}: ${spent} ms`).join("\n");
+  const spent = steps.map(([name, time]) => `${name}: ${time} ms`);
+  element.title = ["Tiles: all that were placed, whether anything of them is drawn or not", ...spent].join("\n");
 }
 
 /** How many problems there are. */

@@ -10,7 +10,7 @@ export const REAL = 96 / 25.4;
 const LEAST = 0.02;
 const MOST = 1500;
 
-/** The room around a page that is fitted. */
+/** The least room around a page that is fitted. */
 const ROOM = 32;
 
 /** How much a key or a button zooms, and how far an arrow pans. */
@@ -28,16 +28,21 @@ export class View {
   #window;
   #page = null;
   #isFitted = true;
+  #covered;
   #pointers = new Map();
 
   scale = REAL;
   x = 0;
   y = 0;
 
-  /** `onMove` is called whenever page or window have moved; `onPoint` with the place under the pointer, or null. */
-  constructor(element, onMove, onPoint) {
+  /**
+   * `onMove` is called whenever page or window have moved; `onPoint` with the place under the pointer, or null; `covered()`
+   * says how many pixels at the window's top and bottom lie under something.
+   */
+  constructor(element, onMove, onPoint, covered) {
     this.#window = element;
     this.onMove = onMove;
+    this.#covered = covered;
     new ResizeObserver(() => (this.#isFitted ? this.fit() : this.#moved())).observe(element);
     element.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
     element.addEventListener("pointerdown", (event) => this.#down(event));
@@ -63,16 +68,25 @@ export class View {
     else this.#moved();
   }
 
+  /** Fits the page again where it was fitted: something has come to lie over the window's edge, or has gone. */
+  refit() {
+    if (this.#isFitted) this.fit();
+  }
+
   /** Shows the whole page. */
   fit() {
     if (!this.#page) return;
     const { width, height } = this.size;
     if (width === 0 || height === 0) return;
     const room = Math.min(ROOM, width / 12, height / 12);
-    const scale = Math.min((width - 2 * room) / this.#page.width, (height - 2 * room) / this.#page.height);
+    const covered = this.#covered();
+    const [top, bottom] = [covered.top, covered.bottom].map((part) => Math.min(Math.max(room, part), height / 3));
+    const scale = Math.min((width - 2 * room) / this.#page.width, (height - top - bottom) / this.#page.height);
     this.scale = clamp(scale);
     this.x = (width - this.#page.width * this.scale) / 2;
-    this.y = (height - this.#page.height * this.scale) / 2;
+    // In the middle, as far as nothing covers it there.
+    const middle = (height - this.#page.height * this.scale) / 2;
+    this.y = Math.max(top, Math.min(middle, height - bottom - this.#page.height * this.scale));
     this.#isFitted = true;
     this.#moved();
   }
