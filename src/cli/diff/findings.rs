@@ -13,14 +13,19 @@ use crate::geom::Length;
 use crate::scene::{Colour, Depth};
 
 use super::side::{MOST_MEASURED, Made, Painted};
+use super::tones::{Declared, declared};
 
 /// Measures below it are zero: rounding differs where nothing else does.
 const NOTHING: f64 = 1e-9;
 
+/// The measures that the preview shows first too.
+const CHIEF: [&str; 8] = ["e_contrast", "e_share", "h_angle", "xi", "c_cov", "u_vor", "density_contrast", "grain"];
+
 /// All that differs.
 #[derive(Debug, Serialize)]
 pub(super) struct Findings {
-    /// Whether both sides have a picture, and it is the same.
+    /// Whether both sides have a picture, and it is the same; of files that draw nothing by themselves, whether no picture
+    /// of a scene that imports them can differ.
     pub(super) same: bool,
     /// Whether the texts of the scenes, their imports or the files they read differ.
     pub(super) text_changed: bool,
@@ -29,6 +34,8 @@ pub(super) struct Findings {
     /// Parameters and the seed.
     pub(super) params: Vec<Change>,
     pub(super) canvas: Vec<Change>,
+    /// Of files that draw nothing by themselves, what they declare that is not what it was.
+    pub(super) declared: Vec<Declared>,
     /// Whether paints that are in both lie on each other in another order.
     pub(super) order_changed: bool,
     /// Paints and what else is drawn, from the bottom up.
@@ -39,12 +46,22 @@ pub(super) struct Findings {
     pub(super) notes: Vec<String>,
 }
 
+impl Findings {
+    /// Whether all there is draws nothing by itself.
+    pub(super) fn draws_nothing(&self) -> bool {
+        let sides = || [&self.old, &self.new].into_iter().filter(|side| side.exists);
+        sides().next().is_some() && sides().all(|side| side.draws_nothing)
+    }
+}
+
 /// One side by itself.
 #[derive(Debug, Serialize)]
 pub(super) struct Summary {
     pub(super) name: String,
     /// Whether there is a scene at all.
     pub(super) exists: bool,
+    /// Whether it is without fault and draws nothing by itself, as libraries of tones do not.
+    pub(super) draws_nothing: bool,
     /// What tells its picture from others; none without a picture.
     pub(super) fingerprint: Option<String>,
     pub(super) paints: usize,
@@ -92,6 +109,13 @@ pub(super) struct PaintChange {
     pub(super) metrics: Vec<Measure>,
 }
 
+impl PaintChange {
+    /// The measures that are asked for first, and the others.
+    pub(super) fn measures(&self) -> (Vec<&Measure>, Vec<&Measure>) {
+        self.metrics.iter().partition(|measure| CHIEF.contains(&measure.name.as_str()))
+    }
+}
+
 #[derive(Debug, Serialize)]
 pub(super) struct Measure {
     pub(super) name: String,
@@ -118,6 +142,12 @@ pub(super) fn compare(names: [&str; 2], made: [Option<&Made>; 2]) -> Findings {
     let prints: Vec<Option<Fingerprint>> = drawings.par_iter().map(|drawing| drawing.map(fingerprint)).collect();
     let [before, after] = [prints[0], prints[1]];
     let texts = made.map(|made| made.map(Made::texts));
+    let is_library = old.or(new).is_some() && made.iter().flatten().all(|made| made.draws_nothing());
+    let declared = if is_library { declared(made.map(|made| made.map(|made| &made.lowered))) } else { Vec::new() };
+    let is_same = match is_library {
+        true => old.is_some() && new.is_some() && declared.is_empty(),
+        false => before.is_some() && before == after,
+    };
     let [old_summary, new_summary] = [0, 1].map(|i| summary(names[i], made[i], prints[i].as_ref()));
     let mut notes = Vec::new();
     for (which, made) in ["old", "new"].into_iter().zip(made) {
@@ -134,12 +164,14 @@ pub(super) fn compare(names: [&str; 2], made: [Option<&Made>; 2]) -> Findings {
         _ => paints(made, drawings, &mut notes),
     };
     Findings {
-        same: before.is_some() && before == after,
+        same: is_same,
         text_changed: texts[0] != texts[1],
         old: old_summary,
         new: new_summary,
-        params: params(made),
+        // A library's parameters are told of with all else that it declares.
+        params: if is_library { Vec::new() } else { params(made) },
         canvas: canvas(made),
+        declared,
         order_changed: order_changed(made),
         paints,
         pixels: None,
@@ -151,11 +183,12 @@ fn summary(name: &str, made: Option<&Made>, print: Option<&Fingerprint>) -> Summ
     let drawing = made.and_then(|made| made.drawing.as_ref());
     let layers = || drawing.into_iter().flat_map(|drawing| &drawing.layers);
     let diagnostics =
-        made.map_or(Value::Array(Vec::new()), |made| to_json(&made.lowered.diagnostics, &made.lowered.sources));
+        made.map_or(Value::Array(Vec::new()), |made| to_json(&made.diagnostics(), &made.lowered.sources));
     let painted = made.map_or([].as_slice(), |made| &made.painted);
     Summary {
         name: name.to_owned(),
         exists: made.is_some(),
+        draws_nothing: made.is_some_and(Made::draws_nothing),
         fingerprint: print.map(Fingerprint::to_string),
         paints: painted.len(),
         tiles: painted.iter().map(|paint| paint.pattern.len()).sum(),

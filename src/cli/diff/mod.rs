@@ -3,9 +3,11 @@
 mod call;
 mod findings;
 mod git;
+mod lines;
 mod output;
 mod page;
 mod side;
+mod tones;
 mod words;
 
 use std::ffi::OsString;
@@ -72,6 +74,15 @@ enum Format {
     Json,
 }
 
+/// Of which files the lines that differ are shown after the words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Lines {
+    /// Of those that draw nothing by themselves: there is no picture that says more.
+    OfLibraries,
+    /// Of all: git shows none where a driver is set.
+    OfAll,
+}
+
 /// Who calls, as the environment says.
 fn caller() -> Caller {
     Caller::new(|name| std::env::var_os(name).is_some())
@@ -118,7 +129,7 @@ pub(super) fn run(arguments: &DiffArgs) -> Ended {
             let stands = arguments.path.clone().or_else(|| copied(caller));
             let given = Given { root: arguments.root.as_deref(), stands: stands.as_deref() };
             let opened = [(old, Which::Old), (new, Which::New)].map(|(side, which)| Side::open(side, &given, which));
-            finish(arguments, &forms, opened, stands.as_deref())
+            finish(arguments, &forms, opened, stands.as_deref(), Lines::OfLibraries)
         }
         Ok(Call::Driver(versions)) => drive(arguments, &forms, &versions),
     }
@@ -138,7 +149,7 @@ fn drive(arguments: &DiffArgs, forms: &[Form], versions: &[Version; 2]) -> Ended
     let [old, new] = versions;
     let opened = [(old, Which::Old), (new, Which::New)].map(|(version, which)| Side::version(version, &given, which));
     let name = new.path.to_string_lossy();
-    let ended = finish(arguments, forms, opened, Some(&name));
+    let ended = finish(arguments, forms, opened, Some(&name), Lines::OfAll);
     match ended {
         Ended::Fault if git::trusts(&old.path) => Ended::Fault,
         Ended::Done | Ended::Fault | Ended::Usage | Ended::Io => Ended::Done,
@@ -155,6 +166,7 @@ fn finish(
     forms: &[Form],
     [old, new]: [Result<Side, OpenError>; 2],
     stands: Option<&str>,
+    shown: Lines,
 ) -> Ended {
     let (old, new) = match (old, new) {
         (Ok(old), Ok(new)) => (old, new),
@@ -181,9 +193,10 @@ fn finish(
     let mut said = Vec::new();
     for (name, made) in [(&old.name, &before), (&new.name, &after)] {
         said.extend(
-            made.as_ref().map(|made| (name.clone(), made.lowered.diagnostics.clone(), made.lowered.sources.clone())),
+            made.as_ref().map(|made| (name.clone(), made.diagnostics(), made.lowered.sources.clone())),
         );
     }
+    let texts = [&before, &after].map(|made| made.as_ref().map_or(String::new(), |made| made.text().to_owned()));
     let drawing = |made: Option<Made>| made.and_then(|made| made.drawing);
     let mut sheets = match faulty {
         [false, false] => Sheets::new(drawing(before), drawing(after)),
@@ -210,7 +223,14 @@ fn finish(
         return Ended::Fault;
     }
     let printed = match arguments.format {
-        Format::Human => print(words::words(&findings, Paintbox::new()).as_bytes()),
+        Format::Human => {
+            let paintbox = Paintbox::new();
+            let mut text = words::words(&findings, paintbox);
+            if shown == Lines::OfAll || findings.old.draws_nothing || findings.new.draws_nothing {
+                text.push_str(&lines::lines([&old.name, &new.name], texts.each_ref().map(String::as_str), paintbox));
+            }
+            print(text.as_bytes())
+        }
         Format::Json => match serde_json::to_string_pretty(&findings) {
             Ok(json) => print(format!("{json}\n").as_bytes()),
             Err(error) => {
@@ -220,7 +240,8 @@ fn finish(
         },
     };
     if !forms.is_empty() && sheets.is_none() {
-        eprintln!("kake: there is no picture of the difference: not both scenes can be drawn");
+        let why = if faulty == [false, false] { "neither draws anything by itself" } else { "not both scenes can be drawn" };
+        eprintln!("kake: there is no picture of the difference: {why}");
     }
     match (printed, written) {
         (Ended::Done, Ended::Done) if findings.same => Ended::Done,

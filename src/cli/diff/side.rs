@@ -9,13 +9,14 @@ use std::sync::Arc;
 use crate::cli::files::{FsLoader, OpenError, Opened, is_picture, open, picture, plain};
 use crate::cli::{Ended, picture as pictures};
 use crate::compare::Pattern;
-use crate::diag::Diagnostic;
+use crate::diag::{Code, Diagnostic};
 use crate::drawing::Drawing;
 use crate::library::MANIFEST;
 use crate::loader::{LoadError, Loader};
 use crate::lower::{Lowered, lower};
 use crate::metrics::{Measured, Measures, Scalars};
 use crate::scene::Paint;
+use crate::span;
 use crate::{Compiled, Config, Observer, PaintStages, Step, compile};
 
 use super::call::{Version, is_null, revision};
@@ -75,7 +76,7 @@ impl Side {
         {
             return Self::revision(&name, revision, path, given);
         }
-        let opened = open(side, given.root)?;
+        let opened = open(side, given.root).map_err(|error| without_path(side, given).unwrap_or(error))?;
         Ok(Self { name, source: Source::Opened(Box::new(opened)) })
     }
 
@@ -202,6 +203,15 @@ impl Side {
     }
 }
 
+/// What is said of a file that is not there and has the name of a revision.
+fn without_path(side: &Path, given: &Given<'_>) -> Option<OpenError> {
+    let name = side.to_str().filter(|_| !side.exists())?;
+    Repository::find().ok()?.state(name).ok()?;
+    let path = given.stands.unwrap_or("scene.kake");
+    let words = format!("cannot read {name}: no such file or directory; a revision needs a path: `{name}:{path}`");
+    Some(OpenError::Words(words, Ended::Io))
+}
+
 /// The nearest folder upwards that is there.
 fn existing(folder: PathBuf) -> PathBuf {
     let there = folder.ancestors().find(|folder| folder.is_dir()).unwrap_or(Path::new("."));
@@ -265,14 +275,35 @@ pub(super) struct Made {
 impl Made {
     /// Whether anything keeps it from being drawn.
     pub(super) fn is_faulty(&self) -> bool {
-        self.drawing.is_none() || self.lowered.diagnostics.iter().any(Diagnostic::is_error)
+        let is_faulty = self.lowered.diagnostics.iter().any(Diagnostic::is_error);
+        (self.drawing.is_none() || is_faulty) && !self.draws_nothing()
+    }
+
+    /// Whether it is without fault and has nothing to draw, as libraries of tones have not.
+    pub(super) fn draws_nothing(&self) -> bool {
+        let mut errors = self.lowered.diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).peekable();
+        self.drawing.is_none() && errors.peek().is_some() && errors.all(|error| error.code == Code::Empty)
+    }
+
+    /// What is to be said of it: that it draws nothing is none of that.
+    pub(super) fn diagnostics(&self) -> Vec<Diagnostic> {
+        self.lowered.diagnostics.iter().filter(|diagnostic| diagnostic.code != Code::Empty).cloned().collect()
+    }
+
+    /// The scene's own text.
+    pub(super) fn text(&self) -> &str {
+        self.own().next().map_or("", |source| source.text.as_ref())
+    }
+
+    /// The texts that were read, the scene's first.
+    fn own(&self) -> impl Iterator<Item = &span::Source> {
+        self.lowered.sources.iter().map(|(_, source)| source).filter(|source| !source.name.starts_with("--"))
     }
 
     /// Every text and file that was read, for whoever wants to know whether one changed.
     pub(super) fn texts(&self) -> (Vec<&str>, Vec<&[u8]>) {
-        let texts = self.lowered.sources.iter().filter(|(_, source)| !source.name.starts_with("--"));
         (
-            texts.map(|(_, source)| source.text.as_ref()).collect(),
+            self.own().map(|source| source.text.as_ref()).collect(),
             self.lowered.files.values().map(AsRef::as_ref).collect(),
         )
     }

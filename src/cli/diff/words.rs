@@ -7,7 +7,8 @@ use crate::compare::Shift;
 use crate::diag::grouped;
 use crate::geom::Length;
 
-use super::findings::{Change, Fate, Findings, Measure, PaintChange, digits, millimetres, significant};
+use super::findings::{Change, Fate, Findings, Measure, PaintChange, Summary, digits, millimetres, significant};
+use super::tones::Declared;
 
 /// Columns of a line of measures.
 const WIDTH: usize = 100;
@@ -29,6 +30,16 @@ impl Paintbox {
         if is_seen && !is_dumb && !is_set("NO_COLOR") { Self::Colours } else { Self::Plain }
     }
 
+    /// A line that came, as git colours it.
+    pub(super) fn added(self, text: &str) -> String {
+        self.put("32", text)
+    }
+
+    /// Where lines stand, as git colours it.
+    pub(super) fn place(self, text: &str) -> String {
+        self.put("36", text)
+    }
+
     fn put(self, code: &str, text: &str) -> String {
         match self {
             Self::Colours => format!("\x1b[{code}m{text}\x1b[0m"),
@@ -36,7 +47,7 @@ impl Paintbox {
         }
     }
 
-    fn old(self, text: &str) -> String {
+    pub(super) fn old(self, text: &str) -> String {
         self.put("31", text)
     }
 
@@ -44,7 +55,7 @@ impl Paintbox {
         self.put("94", text)
     }
 
-    fn strong(self, text: &str) -> String {
+    pub(super) fn strong(self, text: &str) -> String {
         self.put("1", text)
     }
 
@@ -64,6 +75,13 @@ pub(super) fn words(findings: &Findings, paintbox: Paintbox) -> String {
     line(&mut out, &paintbox.old(&format!("old  {old}")));
     line(&mut out, &paintbox.new_one(&format!("new  {new}")));
     line(&mut out, &paintbox.strong(&verdict(findings)));
+    if findings.draws_nothing() {
+        let hint = "draws nothing by itself: what becomes of pictures is seen where a scene that imports it is compared";
+        line(&mut out, &paintbox.faint(hint));
+    }
+    for change in &findings.declared {
+        declared(&mut out, change, paintbox);
+    }
     table(&mut out, "parameters", &findings.params, paintbox);
     table(&mut out, "canvas", &findings.canvas, paintbox);
     if findings.order_changed {
@@ -87,12 +105,18 @@ pub(super) fn words(findings: &Findings, paintbox: Paintbox) -> String {
 /// The whole in one sentence.
 pub(super) fn verdict(findings: &Findings) -> String {
     let (old, new) = (&findings.old, &findings.new);
-    let is_faulty = |side: &super::findings::Summary| side.exists && side.fingerprint.is_none();
+    let is_faulty = |side: &Summary| side.exists && side.fingerprint.is_none() && !side.draws_nothing;
     match (is_faulty(old), is_faulty(new)) {
         (true, true) => return "neither scene compiles".to_owned(),
-        (true, false) => return format!("the old scene does not compile; the new one has {}", sum(new)),
-        (false, true) => return format!("the new scene does not compile; the old one has {}", sum(old)),
+        (true, false) => return format!("the old scene does not compile; the new one {}", has(new)),
+        (false, true) => return format!("the new scene does not compile; the old one {}", has(old)),
         (false, false) => {}
+    }
+    if findings.draws_nothing() {
+        return library(findings);
+    }
+    if old.draws_nothing || new.draws_nothing {
+        return format!("the old scene {}; the new one {}", has(old), has(new));
     }
     match (old.exists, new.exists) {
         (false, true) => return format!("the scene is new: {}", sum(new)),
@@ -117,7 +141,72 @@ pub(super) fn verdict(findings: &Findings) -> String {
     }
 }
 
-fn sum(side: &super::findings::Summary) -> String {
+/// The whole of files that draw nothing by themselves in one sentence.
+fn library(findings: &Findings) -> String {
+    let count = |fate: Fate| findings.declared.iter().filter(|change| change.change == fate).count();
+    let tones = findings.declared.iter().filter(|change| change.kind == "tone").count();
+    let tones_of = || if tones == 1 { "1 tone".to_owned() } else { format!("{tones} tones") };
+    match (findings.old.exists, findings.new.exists) {
+        (false, _) => return format!("the file is new: {}", tones_of()),
+        (_, false) => return format!("the file went: {}", tones_of()),
+        (true, true) => {}
+    }
+    if findings.same {
+        let same = "what it declares is the same: only the text changed";
+        return if findings.text_changed { same } else { "nothing changed" }.to_owned();
+    }
+    let counts = [(Fate::Changed, "changed"), (Fate::Came, "came"), (Fate::Went, "went")];
+    let counts = counts.map(|(fate, word)| (count(fate), word));
+    let counts: Vec<String> =
+        counts.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}")).collect();
+    let what = if tones == findings.declared.len() { "the tones differ" } else { "what it declares differs" };
+    format!("{what}: {}", counts.join(", "))
+}
+
+/// What became of a declaration.
+fn declared(out: &mut String, change: &Declared, paintbox: Paintbox) {
+    let name = if change.name.is_empty() { change.kind.to_owned() } else { format!("{} `{}`", change.kind, change.name) };
+    let name = printable(&name);
+    let head = match change.change {
+        Fate::Came => paintbox.new_one(&format!("{name} came")),
+        Fate::Went => paintbox.old(&format!("{name} went")),
+        Fate::Same | Fate::Changed | Fate::Renamed => format!("{}: changed", paintbox.strong(&name)),
+    };
+    line(out, &format!("\n{head}{}", documented(change.doc.as_deref(), paintbox)));
+    let width = change.parts.iter().map(|part| part.name.chars().count()).max().unwrap_or(0).max(10);
+    for part in &change.parts {
+        let gap = " ".repeat(width - part.name.chars().count());
+        let [old, new] = [&part.old, &part.new].map(|side| side.as_deref().map(printable));
+        let text = match (old, new) {
+            (Some(old), Some(new)) if old.chars().count() + new.chars().count() > WIDTH => "changed".to_owned(),
+            (Some(old), Some(new)) => format!("{} → {}", paintbox.old(&old), paintbox.new_one(&new)),
+            (Some(old), None) => paintbox.old(&format!("{} went", clipped(&old))),
+            // All of what came did.
+            (None, Some(new)) if change.change == Fate::Came => paintbox.new_one(&clipped(&new)),
+            (None, Some(new)) => paintbox.new_one(&format!("{} came", clipped(&new))),
+            (None, None) => String::new(),
+        };
+        let name = printable(&part.name);
+        line(out, &format!("  {name}{gap} {text}{}", documented(part.doc.as_deref(), paintbox)));
+    }
+}
+
+/// The first line of a doc comment, behind what it belongs to.
+fn documented(doc: Option<&str>, paintbox: Paintbox) -> String {
+    let first = doc.and_then(|doc| doc.lines().next()).map(str::trim).filter(|line| !line.is_empty());
+    first.map(|line| paintbox.faint(&format!("  {}", clipped(&printable(line))))).unwrap_or_default()
+}
+
+/// A text that is not too long for a line.
+fn clipped(text: &str) -> String {
+    if text.chars().count() <= WIDTH { text.to_owned() } else { text.chars().take(WIDTH).chain(['…']).collect() }
+}
+
+fn has(side: &Summary) -> String {
+    if side.draws_nothing { "draws nothing by itself".to_owned() } else { format!("has {}", sum(side)) }
+}
+
+fn sum(side: &Summary) -> String {
     let paints = if side.paints == 1 { "1 paint".to_owned() } else { format!("{} paints", side.paints) };
     let (tiles, marks) = (grouped(side.tiles as u64), grouped(side.marks));
     format!("{paints}, {tiles} tiles, {marks} marks, {} drawn", metres(side.drawn))
@@ -146,7 +235,16 @@ fn paint(out: &mut String, change: &PaintChange, paintbox: Paintbox) {
     for look in &change.look {
         row(out, &look.name, value(look.old.as_deref()), value(look.new.as_deref()), paintbox);
     }
-    measures(out, &change.metrics, paintbox);
+    let (chief, others) = change.measures();
+    measures(out, &chief, paintbox);
+    let many = |count: usize| if count == 1 { "measure" } else { "measures" };
+    match (chief.len(), others.len()) {
+        (_, 0) => {}
+        (0, count) => line(out, &paintbox.faint(&format!("  {count} {} changed; `--format json` has them", many(count)))),
+        (_, count) => {
+            line(out, &paintbox.faint(&format!("  … and {count} more {} changed; `--format json` has them", many(count))));
+        }
+    }
 }
 
 fn row(out: &mut String, name: &str, old: &str, new: &str, paintbox: Paintbox) {
@@ -183,7 +281,7 @@ pub(super) fn shifted(shift: &Shift, paintbox: Paintbox) -> String {
 }
 
 /// The measures, as many on a line as there is room for.
-fn measures(out: &mut String, metrics: &[Measure], paintbox: Paintbox) {
+fn measures(out: &mut String, metrics: &[&Measure], paintbox: Paintbox) {
     let cells: Vec<[String; 3]> = metrics
         .iter()
         .map(|measure| {
