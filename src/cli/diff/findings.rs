@@ -182,8 +182,7 @@ pub(super) fn compare(names: [&str; 2], made: [Option<&Made>; 2]) -> Findings {
 fn summary(name: &str, made: Option<&Made>, print: Option<&Fingerprint>) -> Summary {
     let drawing = made.and_then(|made| made.drawing.as_ref());
     let layers = || drawing.into_iter().flat_map(|drawing| &drawing.layers);
-    let diagnostics =
-        made.map_or(Value::Array(Vec::new()), |made| to_json(&made.diagnostics(), &made.lowered.sources));
+    let diagnostics = made.map_or(Value::Array(Vec::new()), |made| to_json(&made.diagnostics(), &made.lowered.sources));
     let painted = made.map_or([].as_slice(), |made| &made.painted);
     Summary {
         name: name.to_owned(),

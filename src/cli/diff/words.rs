@@ -76,7 +76,8 @@ pub(super) fn words(findings: &Findings, paintbox: Paintbox) -> String {
     line(&mut out, &paintbox.new_one(&format!("new  {new}")));
     line(&mut out, &paintbox.strong(&verdict(findings)));
     if findings.draws_nothing() {
-        let hint = "draws nothing by itself: what becomes of pictures is seen where a scene that imports it is compared";
+        let hint =
+            "draws nothing by itself: what becomes of pictures is seen where a scene that imports it is compared";
         line(&mut out, &paintbox.faint(hint));
     }
     for change in &findings.declared {
@@ -165,7 +166,8 @@ fn library(findings: &Findings) -> String {
 
 /// What became of a declaration.
 fn declared(out: &mut String, change: &Declared, paintbox: Paintbox) {
-    let name = if change.name.is_empty() { change.kind.to_owned() } else { format!("{} `{}`", change.kind, change.name) };
+    let name =
+        if change.name.is_empty() { change.kind.to_owned() } else { format!("{} `{}`", change.kind, change.name) };
     let name = printable(&name);
     let head = match change.change {
         Fate::Came => paintbox.new_one(&format!("{name} came")),
@@ -240,9 +242,14 @@ fn paint(out: &mut String, change: &PaintChange, paintbox: Paintbox) {
     let many = |count: usize| if count == 1 { "measure" } else { "measures" };
     match (chief.len(), others.len()) {
         (_, 0) => {}
-        (0, count) => line(out, &paintbox.faint(&format!("  {count} {} changed; `--format json` has them", many(count)))),
+        (0, count) => {
+            line(out, &paintbox.faint(&format!("  {count} {} changed; `--format json` has them", many(count))))
+        }
         (_, count) => {
-            line(out, &paintbox.faint(&format!("  … and {count} more {} changed; `--format json` has them", many(count))));
+            line(
+                out,
+                &paintbox.faint(&format!("  … and {count} more {} changed; `--format json` has them", many(count))),
+            );
         }
     }
 }
