@@ -192,9 +192,7 @@ fn finish(
     let faulty = [&before, &after].map(|made| made.as_ref().is_some_and(Made::is_faulty));
     let mut said = Vec::new();
     for (name, made) in [(&old.name, &before), (&new.name, &after)] {
-        said.extend(
-            made.as_ref().map(|made| (name.clone(), made.diagnostics(), made.lowered.sources.clone())),
-        );
+        said.extend(made.as_ref().map(|made| (name.clone(), made.diagnostics(), made.lowered.sources.clone())));
     }
     let texts = [&before, &after].map(|made| made.as_ref().map_or(String::new(), |made| made.text().to_owned()));
     let drawing = |made: Option<Made>| made.and_then(|made| made.drawing);
@@ -240,7 +238,8 @@ fn finish(
         },
     };
     if !forms.is_empty() && sheets.is_none() {
-        let why = if faulty == [false, false] { "neither draws anything by itself" } else { "not both scenes can be drawn" };
+        let why =
+            if faulty == [false, false] { "neither draws anything by itself" } else { "not both scenes can be drawn" };
         eprintln!("kake: there is no picture of the difference: {why}");
     }
     match (printed, written) {

@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
+use sha2::{Digest, Sha256};
 
 use crate::lower::Lowered;
 use crate::span::{Source, SourceId, Syntax};
@@ -78,11 +79,7 @@ pub(super) fn declared(made: [Option<&Lowered>; 2]) -> Vec<Declared> {
     found
 }
 
-fn compared(
-    (kind, name): &(&'static str, String),
-    before: Option<&Entry>,
-    after: Option<&Entry>,
-) -> Option<Declared> {
+fn compared((kind, name): &(&'static str, String), before: Option<&Entry>, after: Option<&Entry>) -> Option<Declared> {
     let none = Entry::default();
     let (old, new) = (before.unwrap_or(&none), after.unwrap_or(&none));
     let change = match (before, after) {
@@ -106,7 +103,8 @@ fn compared(
 
 /// Values that differ, in the order of the new ones, what went at the end.
 fn differing(old: &[Value], new: &[Value]) -> Vec<Part> {
-    let find = |list: &[Value], name: &str| list.iter().find(|value| value.name == name).map(|value| value.value.clone());
+    let find =
+        |list: &[Value], name: &str| list.iter().find(|value| value.name == name).map(|value| value.value.clone());
     let went = old.iter().filter(|value| find(new, &value.name).is_none());
     let all = new.iter().chain(went).map(|value| Part {
         name: value.name.clone(),
@@ -138,8 +136,7 @@ fn entries(lowered: &Lowered) -> Entries {
         entries.push((("what is imported from", source.name.clone()), Entry { rest, ..Entry::default() }));
     }
     for (name, bytes) in &lowered.files {
-        // Files are compared by their bytes, and seldom are there many.
-        let rest = bytes.iter().map(|byte| char::from(*byte)).collect();
+        let rest = format!("{:?}", Sha256::digest(bytes));
         entries.push((("file", name.clone()), Entry { rest, ..Entry::default() }));
     }
     entries

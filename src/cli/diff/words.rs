@@ -76,7 +76,8 @@ pub(super) fn words(findings: &Findings, paintbox: Paintbox) -> String {
     line(&mut out, &paintbox.new_one(&format!("new  {new}")));
     line(&mut out, &paintbox.strong(&verdict(findings)));
     if findings.draws_nothing() {
-        let hint = "draws nothing by itself: what becomes of pictures is seen where a scene that imports it is compared";
+        let hint =
+            "draws nothing by itself: what becomes of pictures is seen where a scene that imports it is compared";
         line(&mut out, &paintbox.faint(hint));
     }
     for change in &findings.declared {
@@ -165,7 +166,8 @@ fn library(findings: &Findings) -> String {
 
 /// What became of a declaration.
 fn declared(out: &mut String, change: &Declared, paintbox: Paintbox) {
-    let name = if change.name.is_empty() { change.kind.to_owned() } else { format!("{} `{}`", change.kind, change.name) };
+    let name =
+        if change.name.is_empty() { change.kind.to_owned() } else { format!("{} `{}`", change.kind, change.name) };
     let name = printable(&name);
     let head = match change.change {
         Fate::Came => paintbox.new_one(&format!("{name} came")),
@@ -209,7 +211,7 @@ fn has(side: &Summary) -> String {
 fn sum(side: &Summary) -> String {
     let paints = if side.paints == 1 { "1 paint".to_owned() } else { format!("{} paints", side.paints) };
     let (tiles, marks) = (grouped(side.tiles as u64), grouped(side.marks));
-    format!("{paints}, {tiles} tiles, {marks} marks, {} drawn", metres(side.drawn))
+    format!("{paints}, {tiles} tiles placed, {marks} marks, {} drawn", metres(side.drawn))
 }
 
 fn paint(out: &mut String, change: &PaintChange, paintbox: Paintbox) {
@@ -240,9 +242,14 @@ fn paint(out: &mut String, change: &PaintChange, paintbox: Paintbox) {
     let many = |count: usize| if count == 1 { "measure" } else { "measures" };
     match (chief.len(), others.len()) {
         (_, 0) => {}
-        (0, count) => line(out, &paintbox.faint(&format!("  {count} {} changed; `--format json` has them", many(count)))),
+        (0, count) => {
+            line(out, &paintbox.faint(&format!("  {count} {} changed; `--format json` has them", many(count))))
+        }
         (_, count) => {
-            line(out, &paintbox.faint(&format!("  … and {count} more {} changed; `--format json` has them", many(count))));
+            line(
+                out,
+                &paintbox.faint(&format!("  … and {count} more {} changed; `--format json` has them", many(count))),
+            );
         }
     }
 }
@@ -286,7 +293,7 @@ fn measures(out: &mut String, metrics: &[&Measure], paintbox: Paintbox) {
         .iter()
         .map(|measure| {
             let [old, new] = short(measure);
-            [measure.name.clone(), old, new]
+            [called(&measure.name).to_owned(), old, new]
         })
         .collect();
     let widths = [0, 1, 2].map(|i| cells.iter().map(|cell| cell[i].chars().count()).max().unwrap_or(0));
@@ -305,6 +312,11 @@ fn measures(out: &mut String, metrics: &[&Measure], paintbox: Paintbox) {
         });
         line(out, cells.collect::<Vec<_>>().join(" ").trim_end());
     }
+}
+
+/// What words call a measure: the tiles that are measured are fewer than those that are placed.
+pub(super) fn called(measure: &str) -> &str {
+    if measure == "tiles" { "tiles inside" } else { measure }
 }
 
 /// Both values of a measure, with as many digits as it takes to see that they differ.
