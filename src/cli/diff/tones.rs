@@ -76,6 +76,10 @@ pub(super) fn declared(made: [Option<&Lowered>; 2]) -> Vec<Declared> {
     }
     let went = old.iter().zip(stayed).filter(|(_, stayed)| !stayed);
     found.extend(went.filter_map(|((key, before), _)| compared(key, Some(before), None)));
+    if made.iter().any(Option::is_none) {
+        // That a file came or went says so of its edition.
+        found.retain(|change| change.kind != "edition");
+    }
     found
 }
 
