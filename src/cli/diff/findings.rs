@@ -144,9 +144,10 @@ pub(super) fn compare(names: [&str; 2], made: [Option<&Made>; 2]) -> Findings {
     let texts = made.map(|made| made.map(Made::texts));
     let is_library = old.or(new).is_some() && made.iter().flatten().all(|made| made.draws_nothing());
     let declared = if is_library { declared(made.map(|made| made.map(|made| &made.lowered))) } else { Vec::new() };
-    let is_same = match is_library {
-        true => old.is_some() && new.is_some() && declared.is_empty(),
-        false => before.is_some() && before == after,
+    let is_same = if is_library {
+        old.is_some() && new.is_some() && declared.is_empty()
+    } else {
+        before.is_some() && before == after
     };
     let [old_summary, new_summary] = [0, 1].map(|i| summary(names[i], made[i], prints[i].as_ref()));
     let mut notes = Vec::new();

@@ -15,7 +15,7 @@ use crate::geom::Length;
 
 use super::findings::{Change, Fate, Findings, PaintChange, Summary};
 use super::output::Sheets;
-use super::words::{Paintbox, metres, shifted, short, verdict};
+use super::words::{Paintbox, called, metres, shifted, short, verdict};
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
@@ -46,7 +46,7 @@ pub(super) fn page(findings: &Findings, sheets: &mut Sheets, difference: &Differ
             body {
                 main {
                     header {
-                        h1 { (verdict(findings)) }
+                        h1 { (capital(&verdict(findings))) }
                         p { span.old { (names[0]) } " → " span.new { (names[1]) } }
                     }
                     section aria-labelledby="both" {
@@ -56,7 +56,7 @@ pub(super) fn page(findings: &Findings, sheets: &mut Sheets, difference: &Differ
                     section aria-labelledby="changes" {
                         h2 #changes { "What went and what came" }
                         p.key { span.went { "went" } " " span.came { "came" } " " span.stayed { "stayed" } }
-                        figure { img src=(seen) alt="What went in red, what came in blue, what stayed in grey"; }
+                        figure.sheet style=(ratio(&sheet)) { img src=(seen) alt="What went in red, what came in blue, what stayed in grey"; }
                     }
                     section aria-labelledby="words" {
                         h2 #words { "In words" }
@@ -81,10 +81,9 @@ fn slider(pictures: &[String; 2], pages: [&Page; 2], sheet: &Page) -> Markup {
     let place = |page: &Page| {
         format!("width:{};height:{}", percent(page.width, sheet.width), percent(page.height, sheet.height))
     };
-    let ratio = format!("aspect-ratio:{}/{}", sheet.width.to_mm(), sheet.height.to_mm());
     html! {
         div.slider {
-            figure.pair style=(ratio) {
+            figure.sheet.pair style=(ratio(sheet)) {
                 div.side { img style=(place(pages[0])) src=(pictures[0]) alt="The old picture"; }
                 div.side.over { img style=(place(pages[1])) src=(pictures[1]) alt="The new picture"; }
                 div.edge {}
@@ -97,6 +96,17 @@ fn slider(pictures: &[String; 2], pages: [&Page; 2], sheet: &Page) -> Markup {
             p.hint { "Drag on the picture, or use the arrow keys on the slider." }
         }
     }
+}
+
+/// How wide a sheet is for its height: both pictures of it have one size.
+fn ratio(sheet: &Page) -> String {
+    format!("--ratio:{}", sheet.width.to_mm() / sheet.height.to_mm())
+}
+
+/// A sentence as it begins a page.
+fn capital(text: &str) -> String {
+    let mut characters = text.chars();
+    characters.next().map(|first| first.to_uppercase().chain(characters).collect()).unwrap_or_default()
 }
 
 /// Both pictures as URLs: vectors where they are small enough for a browser, pixels otherwise.
@@ -149,18 +159,37 @@ fn paint(change: &PaintChange) -> Markup {
     for look in &change.look {
         row(&look.name, [&look.old, &look.new].map(|value| value.clone().unwrap_or_else(|| "none".to_owned())));
     }
-    for measure in &change.metrics {
-        row(&measure.name, short(measure));
+    let (chief, others) = change.measures();
+    for measure in chief {
+        row(called(&measure.name), short(measure));
     }
+    let others: Vec<[String; 3]> = others
+        .into_iter()
+        .map(|measure| {
+            let [old, new] = short(measure);
+            [called(&measure.name).to_owned(), old, new]
+        })
+        .collect();
     html! {
         h3 { (head) }
         @if let Some(shift) = &change.tiles { p { "Tiles: " (shifted(shift, Paintbox::Plain)) "." } }
-        @if !rows.is_empty() {
-            div.wide {
-                table {
-                    thead { tr { th scope="col" { "" } th scope="col" { "old" } th scope="col" { "new" } } }
-                    tbody { @for [name, old, new] in rows { tr { th scope="row" { (name) } td.old { (old) } td.new { (new) } } } }
-                }
+        @if !rows.is_empty() { (values(&rows)) }
+        @if !others.is_empty() {
+            details {
+                summary { (others.len()) (if rows.is_empty() { " " } else { " more " }) (if others.len() == 1 { "measure" } else { "measures" }) " changed" }
+                (values(&others))
+            }
+        }
+    }
+}
+
+/// Names with an old and a new value.
+fn values(rows: &[[String; 3]]) -> Markup {
+    html! {
+        div.wide {
+            table {
+                thead { tr { th scope="col" { "" } th scope="col" { "old" } th scope="col" { "new" } } }
+                tbody { @for [name, old, new] in rows { tr { th scope="row" { (name) } td.old { (old) } td.new { (new) } } } }
             }
         }
     }
@@ -168,20 +197,29 @@ fn paint(change: &PaintChange) -> Markup {
 
 /// Both sides as a whole.
 fn sums(old: &Summary, new: &Summary) -> Markup {
+    // Twelve digits tell any two pictures apart; the whole is shown under the pointer.
     let print = |side: &Summary| side.fingerprint.clone().unwrap_or_else(|| "–".to_owned());
+    let beginning = |print: &str| print.chars().take("sha256:".len() + 12).collect::<String>();
+    let prints = [old, new].map(print);
     let rows = [
         ("paints", [old, new].map(|side| side.paints.to_string())),
-        ("tiles", [old, new].map(|side| grouped(side.tiles as u64))),
+        ("tiles placed", [old, new].map(|side| grouped(side.tiles as u64))),
         ("marks", [old, new].map(|side| grouped(side.marks))),
         ("drawn", [old, new].map(|side| metres(side.drawn))),
-        ("fingerprint", [old, new].map(print)),
     ];
     html! {
         h3 { "The whole" }
         div.wide {
             table {
                 thead { tr { th scope="col" { "" } th scope="col" { "old" } th scope="col" { "new" } } }
-                tbody { @for (name, [old, new]) in rows { tr { th scope="row" { (name) } td.old { (old) } td.new { (new) } } } }
+                tbody {
+                    @for (name, [old, new]) in rows { tr { th scope="row" { (name) } td.old { (old) } td.new { (new) } } }
+                    tr {
+                        th scope="row" { "fingerprint" }
+                        td.old title=(prints[0]) { (beginning(&prints[0])) }
+                        td.new title=(prints[1]) { (beginning(&prints[1])) }
+                    }
+                }
             }
         }
     }

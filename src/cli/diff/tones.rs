@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
+use sha2::{Digest, Sha256};
 
 use crate::lower::Lowered;
 use crate::span::{Source, SourceId, Syntax};
@@ -75,6 +76,10 @@ pub(super) fn declared(made: [Option<&Lowered>; 2]) -> Vec<Declared> {
     }
     let went = old.iter().zip(stayed).filter(|(_, stayed)| !stayed);
     found.extend(went.filter_map(|((key, before), _)| compared(key, Some(before), None)));
+    if made.iter().any(Option::is_none) {
+        // That a file came or went says so of its edition.
+        found.retain(|change| change.kind != "edition");
+    }
     found
 }
 
@@ -135,8 +140,7 @@ fn entries(lowered: &Lowered) -> Entries {
         entries.push((("what is imported from", source.name.clone()), Entry { rest, ..Entry::default() }));
     }
     for (name, bytes) in &lowered.files {
-        // Files are compared by their bytes, and seldom are there many.
-        let rest = bytes.iter().map(|byte| char::from(*byte)).collect();
+        let rest = format!("{:?}", Sha256::digest(bytes));
         entries.push((("file", name.clone()), Entry { rest, ..Entry::default() }));
     }
     entries

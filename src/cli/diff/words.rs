@@ -211,7 +211,7 @@ fn has(side: &Summary) -> String {
 fn sum(side: &Summary) -> String {
     let paints = if side.paints == 1 { "1 paint".to_owned() } else { format!("{} paints", side.paints) };
     let (tiles, marks) = (grouped(side.tiles as u64), grouped(side.marks));
-    format!("{paints}, {tiles} tiles, {marks} marks, {} drawn", metres(side.drawn))
+    format!("{paints}, {tiles} tiles placed, {marks} marks, {} drawn", metres(side.drawn))
 }
 
 fn paint(out: &mut String, change: &PaintChange, paintbox: Paintbox) {
@@ -293,7 +293,7 @@ fn measures(out: &mut String, metrics: &[&Measure], paintbox: Paintbox) {
         .iter()
         .map(|measure| {
             let [old, new] = short(measure);
-            [measure.name.clone(), old, new]
+            [called(&measure.name).to_owned(), old, new]
         })
         .collect();
     let widths = [0, 1, 2].map(|i| cells.iter().map(|cell| cell[i].chars().count()).max().unwrap_or(0));
@@ -312,6 +312,11 @@ fn measures(out: &mut String, metrics: &[&Measure], paintbox: Paintbox) {
         });
         line(out, cells.collect::<Vec<_>>().join(" ").trim_end());
     }
+}
+
+/// What words call a measure: the tiles that are measured are fewer than those that are placed.
+pub(super) fn called(measure: &str) -> &str {
+    if measure == "tiles" { "tiles inside" } else { measure }
 }
 
 /// Both values of a measure, with as many digits as it takes to see that they differ.
